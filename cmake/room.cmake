@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# pixelsynth_room(NAME SOURCES ... LINK ... PCH ...): one library for one room of DESIGN.md.
+# Its target is pixelsynth_NAME, known to others as pixelsynth::NAME.
+
+add_library(pixelsynth_flags INTERFACE)
+target_compile_options(pixelsynth_flags INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
+  # One rounding for each operation, on every machine: results are the same bytes everywhere.
+  -ffp-contract=off)
+if(PIXELSYNTH_WERROR)
+  target_compile_options(pixelsynth_flags INTERFACE -Werror)
+endif()
+if(PIXELSYNTH_SANITIZE)
+  add_compile_options(-fsanitize=${PIXELSYNTH_SANITIZE} -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${PIXELSYNTH_SANITIZE})
+  if(PIXELSYNTH_SANITIZE MATCHES undefined)
+    add_compile_options(-fno-sanitize-recover=undefined)
+  endif()
+endif()
+if(PIXELSYNTH_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()
+
+# PCL's own compile options would reach every target; take its libraries and headers alone.
+add_library(pixelsynth_pcl INTERFACE)
+target_include_directories(pixelsynth_pcl SYSTEM INTERFACE ${PCL_INCLUDE_DIRS})
+target_link_libraries(pixelsynth_pcl INTERFACE pcl_common pcl_kdtree pcl_search)
+
+function(pixelsynth_room name)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;LINK;PCH" ${ARGN})
+  set(target pixelsynth_${name})
+  add_library(${target} STATIC ${ROOM_SOURCES})
+  add_library(pixelsynth::${name} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(${target} PUBLIC cxx_std_17)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/pixelsynth>)
+  target_link_libraries(${target} PUBLIC ${ROOM_LINK} PRIVATE $<BUILD_INTERFACE:pixelsynth_flags>)
+  if(ROOM_PCH)
+    target_precompile_headers(${target} PRIVATE ${ROOM_PCH})
+  endif()
+  set_property(GLOBAL APPEND PROPERTY PIXELSYNTH_ROOMS ${target})
+endfunction()

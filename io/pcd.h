@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "libps/geometry/point.h"
+
+namespace ps {
+
+/// @brief Reads a cloud from PCD 0.7: ASCII, binary, binary_compressed; x y z, rgb or rgba, and our
+/// footprint, view and origin when there. Points that are not finite are dropped.
+/// Throws ps::Error when the header is unsound or promises more than the file holds.
+Cloud read_pcd(const std::filesystem::path& path);
+
+/// @brief Writes PCD 0.7, binary or binary_compressed. The file appears whole or not at all.
+/// Throws ps::Error when a compressed block would not fit PCL's 32-bit sizes.
+void write_pcd(const std::filesystem::path& path, const Cloud& cloud, bool compressed = false);
+
+}  // namespace ps

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "libps/core/image.h"
+
+namespace ps {
+
+/// A photo, turned upright as its EXIF orientation says.
+struct Photo {
+  Image color;
+  /// EXIF focal length in pixels of this image (from FocalLengthIn35mmFilm, or from FocalLength and the
+  /// focal plane resolution); empty when the file does not say.
+  std::optional<double> focal_px;
+};
+
+/// @brief Reads what OpenCV reads (JPEG, PNG, TIFF, WebP, ...); grey and alpha become RGB; 8 and 16 bit.
+/// Throws ps::Error when the file is missing, empty, truncated or no image.
+Photo read_photo(const std::filesystem::path& path);
+
+/// @brief Writes 8-bit PNG or JPEG, by extension; values are clamped to [0,1] and rounded.
+/// The file appears whole or not at all.
+void write_image(const std::filesystem::path& path, const Image& image);
+
+}  // namespace ps

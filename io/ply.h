@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "libps/geometry/point.h"
+
+namespace ps {
+
+/// @brief Reads a cloud from PLY: ASCII, binary little or big endian; float or double; colours named
+/// red/r/diffuse_red (uchar, ushort or float in [0,1]); our scalar_footprint, scalar_view and
+/// scalar_origin when there; other properties, faces and other elements are ignored.
+/// Points that are not finite are dropped; points without colour are grey (128).
+/// Throws ps::Error when the header is not a PLY's, promises more than the file holds, or lacks x y z.
+Cloud read_ply(const std::filesystem::path& path);
+
+/// @brief Writes binary little-endian PLY: x y z, red green blue, scalar_footprint, scalar_view,
+/// scalar_origin; comments give tool, version, units and axes (DESIGN.md, "Files").
+/// The file appears whole or not at all. Throws ps::Error when a coordinate is not finite.
+void write_ply(const std::filesystem::path& path, const Cloud& cloud);
+
+}  // namespace ps

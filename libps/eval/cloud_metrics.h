@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "libps/geometry/point.h"
+
+namespace ps {
+
+/// @brief How well a cloud matches a true cloud (Knapitsch et al., Tanks and Temples, 2017).
+struct CloudScore {
+  double threshold = 0;     ///< metres
+  double accuracy = 0;      ///< share of the cloud's points nearer than this to a true point
+  double completeness = 0;  ///< share of the true points nearer than this to a point of the cloud
+  double f_score = 0;       ///< harmonic mean of the two; 0 when either cloud is empty
+};
+
+/// @return one score for each threshold (metres); distances are exact nearest-neighbour distances
+std::vector<CloudScore> cloud_scores(const Cloud& cloud, const Cloud& truth,
+                                     const std::vector<double>& thresholds);
+
+/// @brief Symmetric chamfer distance: the mean of the two mean nearest-neighbour distances, metres.
+double chamfer_distance(const Cloud& a, const Cloud& b);
+
+}  // namespace ps

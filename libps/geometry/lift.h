@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "libps/geometry/point.h"
+#include "libps/geometry/view.h"
+
+namespace ps {
+
+struct LiftOptions {
+  double min_depth = 0.0;    ///< metres; nearer pixels are skipped
+  double max_depth = 1e4;    ///< metres; farther pixels are skipped
+  /// A pixel is a flying pixel when it hangs between two opposite neighbours, more than this many
+  /// footprints behind one and before the other. 0 keeps them all. 8 is a surface seen at 83 degrees.
+  double edge_footprints = 8;
+};
+
+/// @brief Which pixels of a depth image stand for a surface.
+/// @param depth  metres, 0 = unknown; NaN, infinite and negative values count as unknown
+/// @return 1 where the depth is known, in range and not a flying pixel
+Mask liftable(const Depth& depth, const Intrinsics& intrinsics, const LiftOptions& options = {});
+
+/// @brief Lifts pixels to coloured points in the world frame (SPEC.md 1; PixelSynth section 3.1).
+/// @param pixels  lifts where this is not 0; of the view's size
+/// @param view_number  written to each point's `view`
+/// Points come in row-major order of their pixels. Throws ps::Error when sizes differ.
+Cloud lift(const View& view, const Mask& pixels, std::uint16_t view_number, Origin origin);
+
+/// @brief The same, for all liftable pixels.
+Cloud lift(const View& view, std::uint16_t view_number = 0, Origin origin = Origin::observed,
+           const LiftOptions& options = {});
+
+}  // namespace ps

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "libps/geometry/scene_cloud.h"
+
+namespace ps {
+
+/// @brief Where fuse() gets its views from, one at a time, so that memory holds few of them.
+struct ViewSource {
+  std::size_t count = 0;
+  /// Loads view i. Called from one background thread, in order, at most once for each i.
+  std::function<View(std::size_t)> load;
+};
+
+struct FuseOptions {
+  SceneCloudOptions cloud;
+  /// Remove points that other views see through as often as views support them.
+  bool remove_contradicted = true;
+};
+
+struct FuseReport {
+  std::size_t views = 0;
+  AddReport pixels;             ///< summed over the views
+  std::size_t contradicted = 0;  ///< points removed at the end
+  std::size_t points = 0;        ///< in the cloud
+  double load_seconds = 0;       ///< waiting for views
+  double add_seconds = 0;
+};
+
+/// @brief Fuses posed RGB-D views into one deduplicated cloud (issue "Geometry", DESIGN.md).
+/// @param progress  called after each view with (done, count); return false to stop: ps::Error then
+/// Point.view is the index of the view in the source. Errors of load() and unsound views are thrown.
+Cloud fuse(const ViewSource& source, const FuseOptions& options = {}, FuseReport* report = nullptr,
+           const std::function<bool(std::size_t, std::size_t)>& progress = {});
+
+}  // namespace ps
