@@ -17,8 +17,8 @@ class Error : public std::runtime_error {
   /// @param what      what is wrong with it
   /// @param expected  what would be right; may be empty
   Error(const std::string& where, const std::string& what, const std::string& expected = "")
-      : std::runtime_error(where + ": " + what + (expected.empty() ? "" : "; expected " + expected)) {
-  }
+      : std::runtime_error(where + ": " + what +
+                           (expected.empty() ? "" : "; expected " + expected)) {}
 };
 
 }  // namespace ps

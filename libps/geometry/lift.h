@@ -9,10 +9,11 @@
 namespace ps {
 
 struct LiftOptions {
-  double min_depth = 0.0;    ///< metres; nearer pixels are skipped
-  double max_depth = 1e4;    ///< metres; farther pixels are skipped
+  double min_depth = 0.0;  ///< metres; nearer pixels are skipped
+  double max_depth = 1e4;  ///< metres; farther pixels are skipped
   /// A pixel is a flying pixel when it hangs between two opposite neighbours, more than this many
-  /// footprints behind one and before the other. 0 keeps them all. 8 is a surface seen at 83 degrees.
+  /// footprints behind one and before the other. 0 keeps them all. 8 is a surface seen at 83
+  /// degrees.
   double edge_footprints = 8;
 };
 

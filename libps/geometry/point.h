@@ -15,8 +15,8 @@ enum class Origin : std::uint8_t { observed = 0, outpainted = 1 };
 
 /// @brief The one point type of the toolkit (DESIGN.md, "Words and conventions").
 ///
-/// World frame, metres. `footprint` is the metres one pixel covered where the point was seen, `view`
-/// the number of the view that added it, `origin` an ps::Origin.
+/// World frame, metres. `footprint` is the metres one pixel covered where the point was seen,
+/// `view` the number of the view that added it, `origin` an ps::Origin.
 struct EIGEN_ALIGN16 Point {
   PCL_ADD_POINT4D;
   PCL_ADD_RGB;
@@ -36,7 +36,8 @@ using Cloud = pcl::PointCloud<Point>;
 
 }  // namespace ps
 
-POINT_CLOUD_REGISTER_POINT_STRUCT(
-    ps::Point, (float, x, x)(float, y, y)(float, z, z)(std::uint32_t, rgba, rgba)(
-                   float, footprint, footprint)(std::uint16_t, view, view)(std::uint8_t, origin,
-                                                                          origin))
+POINT_CLOUD_REGISTER_POINT_STRUCT(ps::Point,
+                                  (float, x, x)(float, y, y)(float, z, z)(std::uint32_t, rgba,
+                                                                          rgba)(float, footprint,
+                                                                                footprint)(
+                                      std::uint16_t, view, view)(std::uint8_t, origin, origin))

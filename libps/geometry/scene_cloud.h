@@ -21,7 +21,8 @@ struct SceneCloudOptions {
   double spacing = 0;
   /// A view whose footprint is below this share of a point's replaces the point by its own pixels.
   double better_footprint = 0.7;
-  /// Move a point along the ray of each further view that sees it, by weight, so noise averages out.
+  /// Move a point along the ray of each further view that sees it, by weight, so noise averages
+  /// out.
   bool average = true;
 };
 

@@ -24,17 +24,18 @@ struct SplatOptions {
   float near = 1e-3f;          ///< metres; points at or before this depth are skipped
   cv::Vec3f background = {0, 0, 0};  ///< colour of the transmittance that is left behind all hits
   bool renormalise = false;  ///< instead, divide the colour by what was absorbed where any was
-  bool count_hits = false;   ///< fill Splat::count; costs the early stop
+  bool count_hits = false;   ///< fill Splat::count and Splat::nearest; costs the early stop
 };
 
 /// @brief A picture of a cloud. All images are of the camera's size.
 struct Splat {
-  Image color;            ///< sum of alpha T c over the hits, front to back, and the background
-  Depth first_depth;      ///< metres; depth of the nearest hit; 0 = no hit
-  Depth expected_depth;   ///< metres; sum of alpha T z over sum of alpha T; 0 = no hit
-  Mask hit;               ///< 1 where at least one point hits
-  Mask missing;           ///< 1 where none hits, widened by the dilation
-  cv::Mat1i count;        ///< hits a pixel counts, at most points_per_pixel; only if asked for
+  Image color;           ///< sum of alpha T c over the hits, front to back, and the background
+  Depth first_depth;     ///< metres; depth of the nearest hit; 0 = no hit
+  Depth expected_depth;  ///< metres; sum of alpha T z over sum of alpha T; 0 = no hit
+  Mask hit;              ///< 1 where at least one point hits
+  Mask missing;          ///< 1 where none hits, widened by the dilation
+  cv::Mat1i count;       ///< hits a pixel counts, at most points_per_pixel; only if asked for
+  cv::Mat_<cv::Vec4i> nearest;  ///< indices of the four nearest hits, -1 = none; only if asked for
 };
 
 /// @brief Points of any layout, world frame, metres; borrowed, not owned.
@@ -58,9 +59,9 @@ PointsView points_view(const pcl::PointCloud<PointT>& cloud) {
 
 /// @brief Points in the image plane, ready to be splatted; arrays of one length.
 struct PlanePoints {
-  std::vector<float> u;          ///< pixels
-  std::vector<float> v;          ///< pixels
-  std::vector<float> z;          ///< depth, any unit; skipped unless > SplatOptions::near and finite
+  std::vector<float> u;  ///< pixels
+  std::vector<float> v;  ///< pixels
+  std::vector<float> z;  ///< depth, any unit; skipped unless > SplatOptions::near and finite
   std::vector<cv::Vec3f> color;  ///< any range
 };
 

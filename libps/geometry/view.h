@@ -15,8 +15,8 @@ struct View {
   Pose world_from_cam = Pose::Identity();
 };
 
-/// @brief Throws ps::Error, naming `where`, unless the sizes agree, the camera is sound and at least
-/// one depth is positive and finite.
+/// @brief Throws ps::Error, naming `where`, unless the sizes agree, the camera is sound and at
+/// least one depth is positive and finite.
 void check(const View& view, const std::string& where);
 
 }  // namespace ps

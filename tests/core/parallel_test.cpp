@@ -49,7 +49,8 @@ TEST_P(ParallelFor, works_inside_itself_and_again_afterwards) {
 TEST_P(ParallelFor, chunks_cover_the_range_and_do_not_depend_on_threads) {
   std::vector<std::pair<std::size_t, std::size_t>> ranges(4);
   parallel_chunks(10, 3, [&](std::size_t b, std::size_t e) { ranges[b / 3] = {b, e}; });
-  const std::vector<std::pair<std::size_t, std::size_t>> expected = {{0, 3}, {3, 6}, {6, 9}, {9, 10}};
+  const std::vector<std::pair<std::size_t, std::size_t>> expected = {
+      {0, 3}, {3, 6}, {6, 9}, {9, 10}};
   EXPECT_EQ(ranges, expected);
 }
 
