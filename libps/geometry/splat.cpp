@@ -83,7 +83,7 @@ class Painter {
     thread_local FrontToBack entries;
     Tile tile = {};
     std::fill(std::begin(tile.left), std::end(tile.left), 1.0f);
-    std::fill(std::begin(tile.live), std::end(tile.live), std::uint8_t{1});
+    tile.live = ~std::uint64_t{0};
     const int x0 = index % bins_.columns * kTile, y0 = index / bins_.columns * kTile;
     const splat_kernel::Params params = {static_cast<float>(x0), static_cast<float>(y0),
                                          options_.radius, options_.count_hits ? 0 : kEnough,
@@ -134,7 +134,7 @@ class Painter {
     const int height = std::min(kTile, result_.color.rows - y0);
     for (int row = 0; row < height; ++row) {
       for (int column = 0; column < width; ++column) {
-        const int i = row * kTile + column;
+        const int i = splat_kernel::pixel_index(column, row);
         const float taken = 1 - tile.left[i];
         const bool hit = tile.count[i] > 0;
         cv::Vec3f color(tile.r[i], tile.g[i], tile.b[i]);

@@ -15,7 +15,7 @@ namespace {
 using splat_kernel::kTile;
 
 constexpr std::size_t kChunk = 16384;
-constexpr std::size_t kBucket = 64;  ///< entries aimed at in a bucket of depth
+constexpr std::size_t kBucket = 12;  ///< entries aimed at in a bucket of depth
 
 std::uint32_t bits_of(float x) {
   std::uint32_t bits;

@@ -2,7 +2,6 @@
 // Compiled once for each instruction set (PS_ISA). C headers only: nothing inline may be shared.
 #include "libps/geometry/splat_kernel.h"
 
-#include <string.h>
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif
@@ -15,51 +14,104 @@ namespace splat_kernel {
 namespace {
 
 #if defined(__AVX512F__)
-constexpr int kLanes = 16;
-#elif defined(__AVX2__)
-constexpr int kLanes = 8;
-#else
-constexpr int kLanes = 4;
-#endif
-constexpr int kVectorsInRow = kTile / kLanes;
 
-typedef float Floats __attribute__((vector_size(4 * kLanes), may_alias));
-typedef int32_t Ints __attribute__((vector_size(4 * kLanes), may_alias));
-
-inline Floats square_root(Floats x) {
-#if defined(__AVX512F__)
-  return (Floats)_mm512_sqrt_ps((__m512)x);
-#elif defined(__AVX2__)
-  return (Floats)_mm256_sqrt_ps((__m256)x);
-#elif defined(__SSE2__)
-  return (Floats)_mm_sqrt_ps((__m128)x);
-#else
-  for (int i = 0; i < kLanes; ++i) x[i] = __builtin_sqrtf(x[i]);
-  return x;
-#endif
+constexpr int kBlockWidth = 4, kBlockHeight = 4;
+typedef float Floats __attribute__((vector_size(64), may_alias));
+typedef int32_t Ints __attribute__((vector_size(64), may_alias));
+typedef __mmask16 Lanes;
+inline Floats square_root(Floats x) { return (Floats)_mm512_sqrt_ps((__m512)x); }
+inline Lanes less(Floats a, Floats b) {
+  return _mm512_cmp_ps_mask((__m512)a, (__m512)b, _CMP_LT_OQ);
 }
+inline Lanes less(Ints a, Ints b) { return _mm512_cmplt_epi32_mask((__m512i)a, (__m512i)b); }
+inline Lanes is_zero(Ints a) { return _mm512_testn_epi32_mask((__m512i)a, (__m512i)a); }
+inline Floats select(Lanes m, Floats a, Floats b) {
+  return (Floats)_mm512_mask_blend_ps(m, (__m512)b, (__m512)a);
+}
+inline Ints increment(Ints a, Lanes m) {
+  return (Ints)_mm512_mask_sub_epi32((__m512i)a, m, (__m512i)a, _mm512_set1_epi32(-1));
+}
+inline bool any(Lanes m) { return m != 0; }
+
+#else
+
+#if defined(__AVX2__)
+constexpr int kBlockWidth = 4, kBlockHeight = 2;
+#else
+constexpr int kBlockWidth = 2, kBlockHeight = 2;
+#endif
+constexpr int kBytes = 4 * kBlockWidth * kBlockHeight;
+typedef float Floats __attribute__((vector_size(kBytes), may_alias));
+typedef int32_t Ints __attribute__((vector_size(kBytes), may_alias));
+typedef Ints Lanes;
+inline Lanes less(Floats a, Floats b) { return a < b; }
+inline Lanes less(Ints a, Ints b) { return a < b; }
+inline Lanes is_zero(Ints a) { return a == 0; }
+inline Floats select(Lanes m, Floats a, Floats b) { return m ? a : b; }
+inline Ints increment(Ints a, Lanes m) { return a - m; }
+#if defined(__AVX2__)
+inline Floats square_root(Floats x) { return (Floats)_mm256_sqrt_ps((__m256)x); }
+inline bool any(Lanes m) { return _mm256_movemask_ps((__m256)m) != 0; }
+#elif defined(__SSE2__)
+inline Floats square_root(Floats x) { return (Floats)_mm_sqrt_ps((__m128)x); }
+inline bool any(Lanes m) { return _mm_movemask_ps((__m128)m) != 0; }
+#else
+inline Floats square_root(Floats x) {
+  for (int i = 0; i < 4; ++i) x[i] = __builtin_sqrtf(x[i]);
+  return x;
+}
+inline bool any(Lanes m) { return (m[0] | m[1] | m[2] | m[3]) != 0; }
+#endif
+
+#endif
+
+constexpr int kLanes = kBlockWidth * kBlockHeight;
+constexpr int kColumns = kTile / kBlockWidth, kRows = kTile / kBlockHeight;
 
 inline Floats& floats(float* p) { return *reinterpret_cast<Floats*>(p); }
 inline Ints& ints(int32_t* p) { return *reinterpret_cast<Ints*>(p); }
+inline Floats all(float x) { return Floats{} + x; }
 
-inline int clamp_int(float x, int low, int high) {
-  return x < low ? low : x > high ? high : static_cast<int>(x);
+/// First place in memory of a block. Blocks are counted row by row over the tile.
+inline int block_start(int block) {
+  return pixel_index(block % kColumns * kBlockWidth, block / kColumns * kBlockHeight);
+}
+
+inline int clamp_pixel(float x) {
+  const float at_least = x > 0.0f ? x : 0.0f;  // written as the machine's max and min: no branch
+  return static_cast<int>(at_least < kTile - 1.0f ? at_least : kTile - 1.0f);
+}
+
+/// A bit for each block that the square around a splat touches.
+inline uint64_t touched(TilePoint p, Params params) {
+  const float x = p.u - params.x0, y = p.v - params.y0, r = params.radius;
+  const int c0 = clamp_pixel(x - r) / kBlockWidth, c1 = clamp_pixel(x + r) / kBlockWidth;
+  const int r0 = clamp_pixel(y - r) / kBlockHeight, r1 = clamp_pixel(y + r) / kBlockHeight;
+  const uint64_t columns = (2ull << c1) - (1ull << c0);
+  uint64_t every_row = 0;
+  for (int row = 0; row < kRows; ++row) every_row |= 1ull << (row * kColumns);
+  const uint64_t rows_below =
+      (r1 + 1) * kColumns == 64 ? ~0ull : (1ull << ((r1 + 1) * kColumns)) - 1;
+  return columns * every_row & rows_below & ~((1ull << (r0 * kColumns)) - 1);
 }
 
 /// SPEC.md 4: alpha = 1 - sqrt(clamp(d^2 / r^2, 1e-3, 1)); a hit is strictly inside the radius.
-inline void blend_vector(Tile* tile, int at, const TilePoint& p, Floats dx2, float dy2, float r2,
-                         float inverse_r2, const Params& params) {
-  const Floats d2 = dx2 + dy2;
+inline void blend_block(Tile* tile, int at, TilePoint p, Floats d2, float inverse_r2,
+                        Params params) {
   Floats& left = floats(tile->left + at);
   Ints& count = ints(tile->count + at);
-  const Ints hit = (d2 < r2) & (left >= params.enough) & (count < params.most_hits);
-  const Floats zero = {};
+  const Lanes inside = less(d2, all(params.radius * params.radius));
+  const Lanes hit =
+      inside & ~less(left, all(params.enough)) & less(count, Ints{} + params.most_hits);
+  if (!any(hit)) return;
   const Floats share = d2 * inverse_r2;
-  const Floats alpha = 1.0f - square_root(share < 1e-3f ? zero + 1e-3f : share);
-  const Floats weight = hit ? alpha * left : zero;
-  Floats& first = floats(tile->first + at);
-  first = (hit & (count == 0)) ? zero + p.z : first;
-  count -= hit;
+  const Floats alpha = 1.0f - square_root(select(less(share, all(1e-3f)), all(1e-3f), share));
+  const Floats weight = select(hit, alpha * left, Floats{});
+  const Lanes first = hit & is_zero(count);
+  if (any(first)) {
+    floats(tile->first + at) = select(first, all(p.z), floats(tile->first + at));
+  }
+  count = increment(count, hit);
   left -= weight;
   floats(tile->r + at) += weight * p.r;
   floats(tile->g + at) += weight * p.g;
@@ -67,50 +119,47 @@ inline void blend_vector(Tile* tile, int at, const TilePoint& p, Floats dx2, flo
   floats(tile->z + at) += weight * p.z;
 }
 
-inline void blend_point(Tile* tile, const TilePoint& p, const Floats* x, float inverse_r2,
-                        const Params& params) {
-  const float r = params.radius, r2 = r * r;
-  const int row_first = clamp_int(p.v - r - params.y0, 0, kTile - 1);
-  const int row_last = clamp_int(p.v + r - params.y0 + 1, 0, kTile - 1);
-  const int vector_first = clamp_int(p.u - r - params.x0, 0, kTile - 1) / kLanes;
-  const int vector_last = clamp_int(p.u + r - params.x0 + 1, 0, kTile - 1) / kLanes;
-  for (int k = vector_first; k <= vector_last; ++k) {
-    const Floats dx = x[k] - p.u;
-    const Floats dx2 = dx * dx;
-    for (int row = row_first; row <= row_last; ++row) {
-      if (!tile->live[row * kVectorsInRow + k]) continue;
-      const float dy = params.y0 + static_cast<float>(row) - p.v;
-      blend_vector(tile, row * kTile + k * kLanes, p, dx2, dy * dy, r2, inverse_r2, params);
-    }
+/// Those of the live blocks in which a pixel can still change.
+inline uint64_t still_live(Tile* tile, uint64_t live, const Params& params) {
+  for (uint64_t blocks = live; blocks; blocks &= blocks - 1) {
+    const int block = __builtin_ctzll(blocks), at = block_start(block);
+    const Lanes can = ~less(floats(tile->left + at), all(params.enough)) &
+                      less(ints(tile->count + at), Ints{} + params.most_hits);
+    if (!any(can)) live &= ~(1ull << block);
   }
-}
-
-bool update_live(Tile* tile, const Params& params) {
-  bool any = false;
-  for (int vector = 0; vector < kTile * kVectorsInRow; ++vector) {
-    if (!tile->live[vector]) continue;
-    const Ints can = (floats(tile->left + vector * kLanes) >= params.enough) &
-                     (ints(tile->count + vector * kLanes) < params.most_hits);
-    int32_t lanes[kLanes];
-    memcpy(lanes, &can, sizeof lanes);
-    int32_t either = 0;
-    for (int i = 0; i < kLanes; ++i) either |= lanes[i];
-    tile->live[vector] = either != 0;
-    any |= either != 0;
-  }
-  return any;
+  return live;
 }
 
 }  // namespace
 
-bool PS_JOIN(blend_, PS_ISA)(Tile* tile, const TilePoint* points, int count, const Params& params) {
-  Floats x[kVectorsInRow];
-  for (int i = 0; i < kTile; ++i) {
-    x[i / kLanes][i % kLanes] = params.x0 + static_cast<float>(i);
+bool PS_JOIN(blend_, PS_ISA)(Tile* tile, const TilePoint* points, int count, const Params& given) {
+  const Params params = given;  // a copy that no store into the tile can change
+  uint64_t live = tile->live;
+  if (kColumns * kRows < 64) live &= (1ull << (kColumns * kRows % 64)) - 1;
+  float block_x[kColumns * kRows], block_y[kColumns * kRows];
+  for (int block = 0; block < kColumns * kRows; ++block) {
+    block_x[block] = static_cast<float>(block % kColumns * kBlockWidth);
+    block_y[block] = static_cast<float>(block / kColumns * kBlockHeight);
+  }
+  Floats lane_x, lane_y;
+  for (int y = 0; y < kBlockHeight; ++y) {
+    for (int x = 0; x < kBlockWidth; ++x) {
+      lane_x[pixel_index(x, y)] = params.x0 + static_cast<float>(x);
+      lane_y[pixel_index(x, y)] = params.y0 + static_cast<float>(y);
+    }
   }
   const float inverse_r2 = 1.0f / (params.radius * params.radius);
-  for (int i = 0; i < count; ++i) blend_point(tile, points[i], x, inverse_r2, params);
-  return update_live(tile, params);
+  for (int i = 0; i < count; ++i) {
+    const TilePoint p = points[i];
+    for (uint64_t blocks = live & touched(p, params); blocks; blocks &= blocks - 1) {
+      const int block = __builtin_ctzll(blocks);
+      const Floats dx = lane_x + block_x[block] - p.u;
+      const Floats dy = lane_y + block_y[block] - p.v;
+      blend_block(tile, block_start(block), p, dx * dx + dy * dy, inverse_r2, params);
+    }
+  }
+  tile->live = still_live(tile, live, params);
+  return tile->live != 0;
 }
 
 }  // namespace splat_kernel

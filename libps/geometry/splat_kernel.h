@@ -8,6 +8,14 @@ namespace ps {
 namespace splat_kernel {
 
 constexpr int kTile = 16;  ///< side of a tile, pixels
+constexpr int kTilePixels = kTile * kTile;
+
+/// Where a tile keeps pixel (x, y). Four by four pixels are neighbours in memory, within them four
+/// by two, within these two by two: a vector of 16, 8 or 4 floats is a compact block, as a splat
+/// is.
+constexpr int pixel_index(int x, int y) {
+  return (y / 4 * (kTile / 4) + x / 4) * 16 + (y / 2 % 2) * 8 + (x / 2 % 2) * 4 + y % 2 * 2 + x % 2;
+}
 
 /// One point as it falls on the image plane.
 struct TilePoint {
@@ -15,16 +23,17 @@ struct TilePoint {
   float r, g, b;
 };
 
-/// What a tile has gathered so far, row-major. Starts as zeros, with `left` all 1.
+/// What a tile has gathered so far, by pixel_index. Starts as zeros, with `left` all 1, `live` all
+/// ones.
 struct alignas(64) Tile {
-  float left[kTile * kTile];  ///< transmittance behind the hits so far
-  float r[kTile * kTile];
-  float g[kTile * kTile];
-  float b[kTile * kTile];
-  float z[kTile * kTile];      ///< sum of weight times depth
-  float first[kTile * kTile];  ///< depth of the first hit; 0 = none
-  int32_t count[kTile * kTile];
-  uint8_t live[kTile * kTile];  ///< for each vector of pixels: can it still change?
+  float left[kTilePixels];  ///< transmittance behind the hits so far
+  float r[kTilePixels];
+  float g[kTilePixels];
+  float b[kTilePixels];
+  float z[kTilePixels];      ///< sum of weight times depth
+  float first[kTilePixels];  ///< depth of the first hit; 0 = none
+  int32_t count[kTilePixels];
+  uint64_t live;  ///< a bit for each block: can it still change?
 };
 
 struct Params {

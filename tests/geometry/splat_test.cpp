@@ -113,7 +113,7 @@ TEST(Splat, every_vector_width_gives_the_same_bytes) {
   std::vector<Tile> tiles(widths.size(), Tile{});
   for (std::size_t w = 0; w < widths.size(); ++w) {
     for (float& left : tiles[w].left) left = 1;
-    for (auto& live : tiles[w].live) live = 1;
+    tiles[w].live = ~std::uint64_t{0};
     for (int i = 0; i < 700; i += 20) widths[w](&tiles[w], points.data() + i, 20, params);
     for (int i = 0; i < kTile * kTile; ++i) {
       EXPECT_EQ(tiles[w].r[i], tiles[0].r[i]);
