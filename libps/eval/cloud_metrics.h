@@ -16,10 +16,15 @@ struct CloudScore {
 };
 
 /// @return one score for each threshold (metres); distances are exact nearest-neighbour distances
+///
+/// Points that are not finite are left out of both clouds. With an empty cloud all shares are 0.
+/// Throws ps::Error when a threshold is not positive and finite. Runs on all threads.
 std::vector<CloudScore> cloud_scores(const Cloud& cloud, const Cloud& truth,
                                      const std::vector<double>& thresholds);
 
 /// @brief Symmetric chamfer distance: the mean of the two mean nearest-neighbour distances, metres.
+/// Points that are not finite are left out; NaN when either cloud is empty. The same bits for any
+/// number of threads.
 double chamfer_distance(const Cloud& a, const Cloud& b);
 
 }  // namespace ps
