@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/atomic_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <random>
+#include <system_error>
+
+#include "libps/core/error.h"
+
+namespace ps {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Throws unless `path` is free or a regular file; follows a link, so that the link stays one.
+fs::path checked_place(const fs::path& path) {
+  std::error_code error;
+  if (path.filename().empty()) throw Error(path.string(), "names no file", "a file name");
+  const fs::path place = fs::is_symlink(path, error) ? fs::weakly_canonical(path, error) : path;
+  const fs::file_status status = fs::status(place, error);
+  if (fs::is_directory(status)) throw Error(path.string(), "is a folder", "a file name");
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    throw Error(path.string(), "is a pipe or a device", "a file name");
+  }
+  const fs::path folder = place.has_parent_path() ? place.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, error)) {
+    throw Error(path.string(), "its folder does not exist", "an existing folder");
+  }
+  return place;
+}
+
+[[noreturn]] void fail(const fs::path& path, const char* doing, int code) {
+  throw Error(path.string(), doing + std::generic_category().message(code));
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(const fs::path& path) : path_(checked_place(path)) {
+  std::random_device random;
+  // open() and not mkstemp(): the file gets the permissions that the user's umask asks for.
+  for (int attempt = 0; attempt < 100 && descriptor_ < 0; ++attempt) {
+    // The number comes first, as a long name must keep its extension.
+    const std::string name = ".ps-" + std::to_string(random()) + path_.extension().string();
+    temporary_ = path_.parent_path() / name;
+    descriptor_ = open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0 && errno != EEXIST) break;
+  }
+  if (descriptor_ < 0) fail(path_, "cannot be written: ", errno);
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ < 0) return;
+  close(descriptor_);
+  unlink(temporary_.c_str());
+}
+
+void AtomicFile::write(const void* data, std::size_t bytes) {
+  const char* at = static_cast<const char*>(data);
+  while (bytes > 0) {
+    const ssize_t written = ::write(descriptor_, at, bytes);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(path_, "writing failed: ", errno);
+    at += written;
+    bytes -= static_cast<std::size_t>(written);
+  }
+}
+
+void AtomicFile::commit() {
+  if (fsync(descriptor_) != 0) fail(path_, "writing failed: ", errno);
+  if (rename(temporary_.c_str(), path_.c_str()) != 0)
+    fail(path_, "cannot be put in place: ", errno);
+  close(descriptor_);
+  descriptor_ = -1;
+}
+
+}  // namespace ps

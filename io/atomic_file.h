@@ -8,9 +8,11 @@
 namespace ps {
 
 /// @brief A file that appears whole or not at all: written beside its place, then renamed.
+/// It replaces a file of that name; where the name is a symbolic link, the file that it leads to.
 class AtomicFile {
  public:
-  /// Makes no parent folder. Throws ps::Error when the folder is not there or cannot be written.
+  /// Makes no parent folder. Throws ps::Error when the folder is not there or cannot be written, or
+  /// when `path` is a folder, a pipe or a device.
   explicit AtomicFile(const std::filesystem::path& path);
   ~AtomicFile();  ///< removes the unfinished file
   AtomicFile(const AtomicFile&) = delete;
@@ -20,7 +22,7 @@ class AtomicFile {
   const std::filesystem::path& temporary() const { return temporary_; }
   void write(const void* data, std::size_t bytes);
   void write(const std::string& text) { write(text.data(), text.size()); }
-  /// Flushes, checks, and puts the file in its place. Throws ps::Error when the disk is full.
+  /// Flushes, checks, and puts the file in its place. Throws ps::Error when the disk is full. Once.
   void commit();
 
  private:

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "libps/geometry/camera.h"
 
@@ -15,7 +17,12 @@ namespace ps {
 /// Throws ps::Error on anything else: distortion, differing aspect, several cameras, bad numbers.
 Intrinsics read_intrinsics(const std::filesystem::path& path, int width = 0, int height = 0);
 
+/// @brief The same from a file's bytes; `name` stands in messages.
+Intrinsics parse_intrinsics(std::string_view bytes, const std::string& name, int width = 0,
+                            int height = 0);
+
 /// @brief Writes Open3D JSON (`.json`), COLMAP (`.txt` named cameras.txt), else 3x3 text.
+/// The file appears whole or not at all. Throws ps::Error when the intrinsics are unsound.
 void write_intrinsics(const std::filesystem::path& path, const Intrinsics& intrinsics);
 
 }  // namespace ps

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "libps/geometry/point.h"
 
@@ -12,8 +14,12 @@ namespace ps {
 /// Throws ps::Error when the header is unsound or promises more than the file holds.
 Cloud read_pcd(const std::filesystem::path& path);
 
+/// @brief The same from a file's bytes; `name` stands in messages.
+Cloud parse_pcd(std::string_view bytes, const std::string& name);
+
 /// @brief Writes PCD 0.7, binary or binary_compressed. The file appears whole or not at all.
-/// Throws ps::Error when a compressed block would not fit PCL's 32-bit sizes.
+/// Throws ps::Error when a coordinate is not finite, or a compressed block would not fit PCL's
+/// 32-bit sizes (186 million points).
 void write_pcd(const std::filesystem::path& path, const Cloud& cloud, bool compressed = false);
 
 }  // namespace ps

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/photo.h"
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "io/bytes.h"
+#include "io/exif.h"
+#include "io/image_bytes.h"
+#include "io/text.h"
+
+namespace ps {
+namespace {
+
+/// EXIF orientation 1 to 8: where row 0 and column 0 of the file are in the upright image.
+cv::Mat upright(const cv::Mat& image, int orientation) {
+  cv::Mat out = image;
+  if (orientation >= 5) cv::transpose(image, out);
+  switch (orientation) {
+    case 2:
+    case 6:
+      cv::flip(out, out, 1);
+      break;
+    case 3:
+    case 7:
+      cv::flip(out, out, -1);
+      break;
+    case 4:
+    case 8:
+      cv::flip(out, out, 0);
+      break;
+    default:
+      break;
+  }
+  return out;
+}
+
+/// BGR integers to RGB shares of `white`.
+template <class T>
+Image to_image(const cv::Mat_<cv::Vec<T, 3>>& bgr, float white) {
+  Image out(bgr.size());
+  for (int y = 0; y < bgr.rows; ++y) {
+    const cv::Vec<T, 3>* from = bgr[y];
+    cv::Vec3f* to = out[y];
+    for (int x = 0; x < bgr.cols; ++x) {
+      to[x] = {from[x][2] / white, from[x][1] / white, from[x][0] / white};
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+Photo parse_photo(std::string_view bytes, const std::string& name) {
+  return guarded(name, [&] {
+    if (bytes.substr(0, 4) == "\x76\x2f\x31\x01") throw Error(name, "is an EXR", "a photo");
+    const Exif exif = parse_exif(check_image_bytes(bytes, name));
+    const cv::Mat stored = decode_image(
+        bytes, cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION, name);
+    const cv::Mat bgr = upright(stored, exif.orientation);
+    Photo photo;
+    if (bgr.type() == CV_8UC3) {
+      photo.color = to_image<unsigned char>(bgr, 255);
+    } else if (bgr.type() == CV_16UC3) {
+      photo.color = to_image<unsigned short>(bgr, 65535);
+    } else {
+      throw Error(name, "its pixels are not integers", "8 or 16 bits for each channel");
+    }
+    photo.focal_px = exif.focal_px(stored.size());
+    return photo;
+  });
+}
+
+Photo read_photo(const std::filesystem::path& path) {
+  return guarded(path.string(), [&] { return parse_photo(FileBytes(path).view(), path.string()); });
+}
+
+void write_image(const std::filesystem::path& path, const Image& image) {
+  guarded(path.string(), [&] {
+    const std::string extension = extension_of(path);
+    if (extension != ".png" && extension != ".jpg" && extension != ".jpeg") {
+      throw Error(path.string(), "cannot write " + in_quotes(extension), ".png, .jpg or .jpeg");
+    }
+    if (image.empty()) throw Error(path.string(), "the image has no pixels", "at least one");
+    encode_image(path, to_bgr8(image));
+  });
+}
+
+}  // namespace ps

@@ -2,17 +2,23 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "libps/geometry/point.h"
 
 namespace ps {
 
-/// @brief Reads a cloud from PLY: ASCII, binary little or big endian; float or double; colours named
-/// red/r/diffuse_red (uchar, ushort or float in [0,1]); our scalar_footprint, scalar_view and
+/// @brief Reads a cloud from PLY: ASCII, binary little or big endian; float or double; colours
+/// named red/r/diffuse_red (uchar, ushort or float in [0,1]); our scalar_footprint, scalar_view and
 /// scalar_origin when there; other properties, faces and other elements are ignored.
 /// Points that are not finite are dropped; points without colour are grey (128).
-/// Throws ps::Error when the header is not a PLY's, promises more than the file holds, or lacks x y z.
+/// Throws ps::Error when the header is not a PLY's, promises more than the file holds, or lacks x y
+/// z.
 Cloud read_ply(const std::filesystem::path& path);
+
+/// @brief The same from a file's bytes; `name` stands in messages.
+Cloud parse_ply(std::string_view bytes, const std::string& name);
 
 /// @brief Writes binary little-endian PLY: x y z, red green blue, scalar_footprint, scalar_view,
 /// scalar_origin; comments give tool, version, units and axes (DESIGN.md, "Files").

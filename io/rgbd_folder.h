@@ -26,12 +26,12 @@ struct RgbdFolder {
 
 /// @brief Lists a folder without loading its images. A trajectory's timestamp names the files: the
 /// file whose stem is that number, else, when counts agree, files in sorted order.
-/// Throws ps::Error when a part is missing or no frame has all three. Frames that lack a file or a pose
-/// are left out and counted in `skipped` when it is given.
+/// Throws ps::Error when a part is missing or no frame has all three. Frames that lack a file or a
+/// pose are left out and counted in `skipped` when it is given.
 RgbdFolder open_rgbd_folder(const std::filesystem::path& path, std::size_t* skipped = nullptr);
 
-/// @brief Loads one frame; depth of another size but the same aspect is resized (nearest), of another
-/// aspect is an Error. Depth in the file is metres times depth_scale.
+/// @brief Loads one frame; depth of another size but the same aspect is resized (nearest), of
+/// another aspect is an Error. Depth in the file is metres times depth_scale.
 View load_frame(const RgbdFolder& folder, const RgbdFrame& frame, double depth_scale = 1000);
 
 }  // namespace ps

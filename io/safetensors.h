@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace ps {
@@ -28,10 +29,17 @@ struct FileTensor {
 using TensorMap = std::map<std::string, FileTensor>;
 
 /// @brief Reads a safetensors file (huggingface/safetensors, "Format"). Throws ps::Error when the
-/// header is unsound, offsets overlap or overrun, sizes disagree with shapes, or the file is too short.
+/// header is unsound, offsets overlap or overrun, sizes disagree with shapes, or the file is too
+/// short.
 TensorMap read_safetensors(const std::filesystem::path& path);
 
-/// @brief Writes all tensors, by name order, data aligned to 8 bytes. Whole or not at all.
+/// @brief The same from a file's bytes; `name` stands in messages.
+TensorMap parse_safetensors(std::string_view bytes, const std::string& name);
+
+/// @brief Writes all tensors without gaps, as the reference implementation does: wide elements
+/// first, then by name, from a multiple of 8 bytes on, so that each tensor is aligned to its
+/// elements. The file appears whole or not at all. Throws ps::Error when a tensor's bytes do not
+/// fit its shape.
 void write_safetensors(const std::filesystem::path& path, const TensorMap& tensors);
 
 }  // namespace ps

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "libps/geometry/camera.h"
@@ -28,8 +29,14 @@ enum class TrajectoryFormat { tum, colmap_images, open3d_log, realestate10k };
 /// missing columns, and when there is no pose at all.
 std::vector<StampedPose> read_trajectory(const std::filesystem::path& path);
 
-/// @brief Writes poses; the file appears whole or not at all. COLMAP's images.txt gets camera id 1
-/// and empty point lines. RealEstate10K needs normalised_intrinsics.
+/// @brief The same from a file's bytes; `name` stands in messages and helps to tell the format.
+std::vector<StampedPose> parse_trajectory(std::string_view bytes, const std::string& name);
+
+/// @brief Writes poses; the file appears whole or not at all. COLMAP's images.txt gets camera id 1,
+/// empty point lines, and names made from the ids (00003.png) where there is none. Its ids and
+/// Open3D's frame numbers are the timestamps where these are whole and differ, else 1, 2, ... and
+/// 0, 1, ...
+/// Throws ps::Error when a pose is unsound, or for RealEstate10K lacks normalised_intrinsics.
 void write_trajectory(const std::filesystem::path& path, const std::vector<StampedPose>& poses,
                       TrajectoryFormat format = TrajectoryFormat::tum);
 

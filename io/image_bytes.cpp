@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "io/image_bytes.h"
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "io/atomic_file.h"
+#include "io/bytes.h"
+
+namespace ps {
+namespace {
+
+constexpr std::string_view kPng = "\x89PNG\r\n\x1a\n";
+constexpr std::string_view kExifPrefix{"Exif\0\0", 6};
+constexpr std::uint64_t kMostPixels = 1u << 28;
+
+bool starts_with(std::string_view text, std::string_view prefix) {
+  return text.substr(0, prefix.size()) == prefix;
+}
+
+[[noreturn]] void truncated(const std::string& name, const char* kind) {
+  throw Error(name, std::string("the ") + kind + " is truncated", "the whole file");
+}
+
+/// @param least_bytes  fewer bytes than these cannot hold that many pixels
+void check_size(std::uint64_t width, std::uint64_t height, std::uint64_t least_bytes,
+                std::string_view bytes, const std::string& name) {
+  const std::string size = std::to_string(width) + "x" + std::to_string(height);
+  if (width == 0 || height == 0) throw Error(name, "the image is " + size, "at least one pixel");
+  if (width * height > kMostPixels) {
+    throw Error(name, "the image is " + size, "at most 268 million pixels");
+  }
+  if (least_bytes > bytes.size()) {
+    throw Error(name, std::to_string(bytes.size()) + " bytes cannot hold " + size + " pixels",
+                "the whole file");
+  }
+}
+
+/// Frame headers hold the size; C4, C8 and CC are other segments (ITU-T T.81, table B.1).
+bool is_frame_header(unsigned char marker) {
+  return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+}
+
+/// @return where the next marker after entropy-coded data at `at` stands
+std::size_t skip_entropy_coded(std::string_view bytes, std::size_t at) {
+  for (; (at = bytes.find('\xFF', at)) != std::string_view::npos; ++at) {
+    if (at + 1 >= bytes.size()) break;
+    const auto next = static_cast<unsigned char>(bytes[at + 1]);
+    const bool restart = next >= 0xD0 && next <= 0xD7;
+    if (next != 0 && next != 0xFF && !restart) return at;
+  }
+  return bytes.size();
+}
+
+std::string_view check_jpeg(std::string_view bytes, const std::string& name) {
+  std::string_view exif;
+  std::size_t at = 2;
+  while (at + 1 < bytes.size()) {
+    if (bytes[at] != '\xFF') throw Error(name, "the JPEG is damaged", "a marker after a segment");
+    const auto marker = static_cast<unsigned char>(bytes[at + 1]);
+    if (marker == 0xD9) return exif;
+    if (marker == 0xFF || marker == 0x01 || (marker >= 0xD0 && marker <= 0xD7)) {
+      at += marker == 0xFF ? 1 : 2;
+      continue;
+    }
+    if (at + 4 > bytes.size()) break;
+    const std::size_t length = load_be<std::uint16_t>(bytes, at + 2);
+    if (length < 2) throw Error(name, "the JPEG is damaged", "segments of two bytes at least");
+    if (at + 2 + length > bytes.size()) break;
+    const std::string_view segment = bytes.substr(at + 4, length - 2);
+    at += 2 + length;
+    if (is_frame_header(marker) && segment.size() >= 5) {
+      const std::uint64_t height = load_be<std::uint16_t>(segment, 1);
+      const std::uint64_t width = load_be<std::uint16_t>(segment, 3);
+      // A block of 8x8 needs one bit at least in Huffman coding; half for subsampled components.
+      check_size(width, height, marker < 0xC9 ? width * height / 1024 : 0, bytes, name);
+    }
+    if (marker == 0xE1 && exif.empty() && starts_with(segment, kExifPrefix)) {
+      exif = segment.substr(kExifPrefix.size());
+    }
+    if (marker == 0xDA) at = skip_entropy_coded(bytes, at);
+  }
+  truncated(name, "JPEG");
+}
+
+std::string_view check_png(std::string_view bytes, const std::string& name) {
+  std::string_view exif;
+  std::size_t at = kPng.size();
+  while (at + 12 <= bytes.size()) {
+    const std::size_t length = load_be<std::uint32_t>(bytes, at);
+    if (length > bytes.size() - at - 12) break;
+    const std::string_view kind = bytes.substr(at + 4, 4);
+    const std::string_view content = bytes.substr(at + 8, length);
+    if (kind == "IHDR" && length >= 13) {
+      const std::uint64_t width = load_be<std::uint32_t>(content, 0);
+      const std::uint64_t height = load_be<std::uint32_t>(content, 4);
+      const unsigned bits = static_cast<unsigned char>(content[8]);
+      // Deflate makes at most 1032 bytes of one; 16 takes the channels at their fewest.
+      check_size(width, height, width * height / 8 * bits / 1100, bytes, name);
+    }
+    if (kind == "eXIf") exif = content;
+    if (kind == "IEND") return exif;
+    at += 12 + length;
+  }
+  truncated(name, "PNG");
+}
+
+std::string_view check_webp(std::string_view bytes, const std::string& name) {
+  if (load<std::uint32_t>(bytes.data() + 4) > bytes.size() - 8) truncated(name, "WebP");
+  std::size_t at = 12;
+  while (at + 8 <= bytes.size()) {
+    const std::size_t length = load<std::uint32_t>(bytes.data() + at + 4);
+    if (length > bytes.size() - at - 8) break;
+    if (bytes.substr(at, 4) == "EXIF") {
+      const std::string_view exif = bytes.substr(at + 8, length);
+      return starts_with(exif, kExifPrefix) ? exif.substr(kExifPrefix.size()) : exif;
+    }
+    at += 8 + length + length % 2;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string_view check_image_bytes(std::string_view bytes, const std::string& name) {
+  if (bytes.empty()) throw Error(name, "is empty", "an image");
+  if (starts_with(bytes, "\xFF\xD8\xFF")) return check_jpeg(bytes, name);
+  if (starts_with(bytes, kPng)) return check_png(bytes, name);
+  if (starts_with(bytes, "RIFF") && bytes.size() >= 12 && bytes.substr(8, 4) == "WEBP") {
+    return check_webp(bytes, name);
+  }
+  return {};
+}
+
+cv::Mat decode_image(std::string_view bytes, int flags, const std::string& name) {
+  check_image_bytes(bytes, name);
+  if (bytes.size() > INT_MAX) throw Error(name, "is larger than 2 GiB", "a smaller image");
+  const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
+  cv::Mat image = cv::imdecode(raw, flags);
+  if (image.empty()) {
+    throw Error(name, "cannot be decoded: damaged, truncated, or not an image",
+                "a whole JPEG, PNG, TIFF or WebP");
+  }
+  return image;
+}
+
+void encode_image(const std::filesystem::path& path, const cv::Mat& image) {
+  std::vector<unsigned char> bytes;
+  if (!cv::imencode(path.extension().string(), image, bytes)) {
+    throw Error(path.string(), "OpenCV cannot encode it");
+  }
+  AtomicFile file(path);
+  file.write(bytes.data(), bytes.size());
+  file.commit();
+}
+
+cv::Mat3b to_bgr8(const Image& image) {
+  const auto to_byte = [](float value) {
+    return static_cast<unsigned char>(value > 0 ? (value < 1 ? value * 255 + 0.5f : 255) : 0);
+  };
+  cv::Mat3b out(image.size());
+  for (int y = 0; y < image.rows; ++y) {
+    const cv::Vec3f* from = image[y];
+    cv::Vec3b* to = out[y];
+    for (int x = 0; x < image.cols; ++x) {
+      to[x] = {to_byte(from[x][2]), to_byte(from[x][1]), to_byte(from[x][0])};
+    }
+  }
+  return out;
+}
+
+}  // namespace ps

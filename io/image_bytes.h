@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "libps/core/image.h"
+
+namespace ps {
+
+/// @brief Walks a JPEG's segments, a PNG's chunks or a WebP's, for what decoders let pass: an end
+/// that is missing, a size that so short a file cannot fill. Other kinds are left to their decoder.
+/// @return the EXIF block, from its TIFF header on; empty when there is none
+/// Throws ps::Error, naming `name`, when the file is truncated or its size is not believable.
+std::string_view check_image_bytes(std::string_view bytes, const std::string& name);
+
+/// @brief cv::imdecode after check_image_bytes(); throws ps::Error where OpenCV fails.
+/// @param flags  cv::ImreadModes
+cv::Mat decode_image(std::string_view bytes, int flags, const std::string& name);
+
+/// @brief cv::imencode by the extension of `path`, into a file that appears whole or not at all.
+void encode_image(const std::filesystem::path& path, const cv::Mat& image);
+
+/// @return 8-bit BGR as OpenCV's encoders take it; clamped and rounded, NaN is 0
+cv::Mat3b to_bgr8(const Image& image);
+
+/// @return whether one size is the other, resized: sides may differ by a pixel's rounding
+inline bool same_aspect(cv::Size a, cv::Size b) {
+  const double difference =
+      static_cast<double>(a.width) * b.height - static_cast<double>(b.width) * a.height;
+  return std::abs(difference) <= std::max<double>(a.width + a.height, b.width + b.height);
+}
+
+}  // namespace ps
