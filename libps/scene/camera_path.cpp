@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/scene/camera_path.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "libps/core/error.h"
+#include "libps/geometry/point.h"
+
+namespace ps {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+/// Where the camera looks, radians: yaw to the right, pitch upwards.
+struct Turn {
+  double yaw = 0;
+  double pitch = 0;
+};
+
+/// The extreme of a direction, as shares of the two ranges.
+Turn extreme(const std::string& direction) {
+  Turn turn;
+  if (direction.find("left") != std::string::npos) turn.yaw = -1;
+  if (direction.find("right") != std::string::npos) turn.yaw = 1;
+  if (direction.find("up") != std::string::npos) turn.pitch = 1;
+  if (direction.find("down") != std::string::npos) turn.pitch = -1;
+  if (turn.yaw != 0 && turn.pitch != 0) return {turn.yaw / 2, turn.pitch / 2};
+  return turn;
+}
+
+/// @param t  from 0 at the start of the path to 1 at its end
+/// @return shares of the two ranges
+Turn turn_at(const std::string& name, double t) {
+  const double phase = 2 * kPi * t;
+  if (name == "circle") return {-std::sin(phase), (std::cos(phase) - 1) / 2};
+  if (name == "sway") return {-std::sin(phase), 0};
+  const Turn end = extreme(name);
+  return {t * end.yaw, t * end.pitch};
+}
+
+/// Camera y points down, so Ry(+) turns right and Rx(+) looks up.
+Pose turned(const Pose& start, const Turn& turn, const PathOptions& options) {
+  const Eigen::Matrix3d rotation =
+      (Eigen::AngleAxisd(turn.yaw * options.range_horizontal, Eigen::Vector3d::UnitY()) *
+       Eigen::AngleAxisd(turn.pitch * options.range_vertical, Eigen::Vector3d::UnitX()))
+          .toRotationMatrix();
+  const Eigen::Vector3d pivot_in_cam(0, 0, options.orbit_radius);
+  Pose start_from_cam = Pose::Identity();
+  start_from_cam.linear() = rotation;
+  start_from_cam.translation() = pivot_in_cam - rotation * pivot_in_cam;
+  return start * start_from_cam;
+}
+
+void check_options(const std::string& name, const PathOptions& options) {
+  const std::vector<std::string>& names = path_names();
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    std::string choices;
+    for (const std::string& choice : names) choices += (choices.empty() ? "" : ", ") + choice;
+    throw Error("camera path", "there is none named '" + name + "'", "one of " + choices);
+  }
+  const auto sound = [](double range) { return range >= 0 && range <= kPi; };
+  if (options.frames < 1) {
+    throw Error("camera path", std::to_string(options.frames) + " frames", "at least 1");
+  }
+  if (!sound(options.range_horizontal) || !sound(options.range_vertical)) {
+    throw Error("camera path", "a range is out of bounds", "0 to pi radians");
+  }
+  if (!(options.orbit_radius >= 0) || !std::isfinite(options.orbit_radius)) {
+    throw Error("camera path", "the orbit radius is negative or not finite", "0 metres or more");
+  }
+}
+
+}  // namespace
+
+const std::vector<std::string>& direction_names() {
+  static const std::vector<std::string> names = {"left",    "right",    "up",        "down",
+                                                 "up-left", "up-right", "down-left", "down-right"};
+  return names;
+}
+
+const std::vector<std::string>& path_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = {"circle", "sway"};
+    all.insert(all.end(), direction_names().begin(), direction_names().end());
+    return all;
+  }();
+  return names;
+}
+
+std::vector<Pose> camera_path(const std::string& name, const Pose& start,
+                              const PathOptions& options) {
+  check_options(name, options);
+  std::vector<Pose> poses = {start};
+  for (int i = 1; i < options.frames; ++i) {
+    const double t = static_cast<double>(i) / (options.frames - 1);
+    poses.push_back(turned(start, turn_at(name, t), options));
+  }
+  const bool closed = name == "circle" || name == "sway";
+  if (closed) poses.back() = start;  // exactly: sin(2 pi) is not quite 0
+  return poses;
+}
+
+Framing frame_cloud(const pcl::PointCloud<Point>& cloud, const Intrinsics& intrinsics) {
+  check(intrinsics, "framing");
+  if (cloud.empty()) throw Error("framing", "the cloud is empty", "at least one point");
+  constexpr std::size_t kSamples = 200000;
+  const std::size_t step = std::max<std::size_t>(1, cloud.size() / kSamples);
+  Eigen::Vector3d low, high;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<float> values;
+    for (std::size_t i = 0; i < cloud.size(); i += step) values.push_back(cloud[i].data[axis]);
+    const auto rank = [&](double share) {
+      const auto nth = values.begin() + std::lround(share * static_cast<double>(values.size() - 1));
+      std::nth_element(values.begin(), nth, values.end());
+      return static_cast<double>(*nth);
+    };
+    low[axis] = rank(0.02);
+    high[axis] = rank(0.98);
+  }
+  const Eigen::Vector3d half = (high - low) / 2;
+  const double fit_width = half.x() * 2 * intrinsics.fx / intrinsics.width;
+  const double fit_height = half.y() * 2 * intrinsics.fy / intrinsics.height;
+  Framing framing;
+  framing.distance = std::max({fit_width, fit_height, 0.1}) * 1.05 + half.z();
+  framing.world_from_cam.translation() = (low + high) / 2 - Eigen::Vector3d(0, 0, framing.distance);
+  return framing;
+}
+
+Intrinsics with_size(const Intrinsics& intrinsics, int width, int height) {
+  const double scale = static_cast<double>(width) / intrinsics.width;
+  Intrinsics sized = intrinsics;
+  sized.width = width;
+  sized.height = height;
+  sized.fx *= scale;
+  sized.fy *= scale;
+  sized.cx = (intrinsics.cx + 0.5) * scale - 0.5;
+  // The height's middle stays the middle; pixel centres are at integers.
+  sized.cy = (intrinsics.cy + 0.5 - intrinsics.height / 2.0) * scale + height / 2.0 - 0.5;
+  return sized;
+}
+
+}  // namespace ps

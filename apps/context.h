@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace ps::apps {
+
+/// @brief The options that every verb takes, and how a verb talks to the user: on stderr alone.
+struct Context {
+  bool verbose = false;
+  bool quiet = false;
+  bool json = false;  ///< print the report on stdout
+  std::uint64_t seed = 0;
+  int threads = 0;  ///< 0 = one for each core
+
+  void say(const std::string& line) const;     ///< unless quiet
+  void detail(const std::string& line) const;  ///< only when verbose
+  void warn(const std::string& line) const;    ///< "warning: ...", unless quiet
+};
+
+/// @return the text on one line: runs of line breaks and blanks become one blank
+std::string one_line(const std::string& text);
+
+}  // namespace ps::apps

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <exception>
+
+namespace ps::apps {
+
+/// Thrown by throw_if_interrupted(), so that destructors remove what is half-written.
+struct Interrupted : std::exception {
+  const char* what() const noexcept override { return "interrupted"; }
+};
+
+/// @brief From now on the first SIGINT, SIGTERM or SIGHUP is noted instead of ending the program; a
+/// second one ends it at once. For verbs that write.
+void note_interrupts();
+
+void throw_if_interrupted();
+
+/// @brief Ends the program the way the noted signal would have, so that shells can tell.
+[[noreturn]] void die_of_interrupt();
+
+}  // namespace ps::apps

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/output.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+#include <system_error>
+
+#include "libps/core/error.h"
+
+namespace fs = std::filesystem;
+
+namespace ps::apps {
+namespace {
+
+void check_parent(const fs::path& path) {
+  const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::error_code ignored;
+  if (!fs::is_directory(parent, ignored)) {
+    throw Error(path.string(), "the folder " + parent.string() + " does not exist",
+                "a path in an existing folder");
+  }
+  if (access(parent.c_str(), W_OK | X_OK) != 0) {
+    throw Error(path.string(), "the folder " + parent.string() + " cannot be written");
+  }
+}
+
+/// `frame_00012.png` -> `frame_#.png`; a name without a number of five digits or more -> "".
+std::string series_of(const fs::path& file) {
+  const std::string name = file.filename().string();
+  const auto digit = [](unsigned char c) { return std::isdigit(c) != 0; };
+  const auto first = std::find_if(name.begin(), name.end(), digit);
+  const auto last = std::find_if_not(first, name.end(), digit);
+  if (last - first < 5) return "";
+  return std::string(name.begin(), first) + '#' + std::string(last, name.end());
+}
+
+void merge(const fs::path& from, const fs::path& to) {
+  std::set<std::string> series;
+  for (const auto& entry : fs::directory_iterator(from)) series.insert(series_of(entry.path()));
+  series.erase("");
+  for (const auto& entry : fs::directory_iterator(to)) {
+    const bool ours = entry.is_regular_file() && series.count(series_of(entry.path())) > 0;
+    if (ours && !fs::exists(from / entry.path().filename())) fs::remove(entry.path());
+  }
+  for (const auto& entry : fs::directory_iterator(from)) {
+    const fs::path place = to / entry.path().filename();
+    if (entry.is_directory() && fs::is_directory(place)) {
+      merge(entry.path(), place);
+    } else {
+      fs::rename(entry.path(), place);
+    }
+  }
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const fs::path& target) : target_(target) {
+  if (!target_.has_filename()) target_ = target_.parent_path();  // OUT/ is OUT
+  if (target_.empty()) throw Error("output", "the folder's name is empty");
+  if (fs::exists(target_) && !fs::is_directory(target_)) {
+    throw Error(target_.string(), "is a file", "a folder, or a path where nothing is yet");
+  }
+  const fs::path whole = fs::absolute(target_).lexically_normal();
+  target_ = whole.has_filename() ? whole : whole.parent_path();
+  check_parent(target_);
+  partial_ = target_;
+  partial_ += ".partial-" + std::to_string(getpid());
+  std::error_code failure;
+  fs::create_directory(partial_, failure);
+  if (failure) throw Error(partial_.string(), failure.message());
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;
+  fs::remove_all(partial_, ignored);
+}
+
+fs::path OutputFolder::file(const std::string& name) {
+  const fs::path path = partial_ / name;
+  fs::create_directories(path.parent_path());
+  return path;
+}
+
+void OutputFolder::commit() try {
+  if (fs::is_directory(target_)) {
+    merge(partial_, target_);
+    fs::remove_all(partial_);
+  } else {
+    fs::rename(partial_, target_);
+  }
+} catch (const fs::filesystem_error& error) {
+  throw Error(target_.string(), error.code().message());
+}
+
+void check_output_file(const fs::path& path, const std::vector<std::string>& extensions) {
+  std::string choices;
+  for (const std::string& extension : extensions) {
+    choices += (choices.empty() ? "" : " or ") + extension;
+  }
+  const auto match = std::find(extensions.begin(), extensions.end(), extension_of(path));
+  if (!extensions.empty() && match == extensions.end()) {
+    throw Error(path.string(), "is no kind of file that can be written here",
+                "a name ending in " + choices);
+  }
+  if (fs::is_directory(path)) throw Error(path.string(), "is a folder", "a file");
+  check_parent(path);
+}
+
+std::string extension_of(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+fs::path beside(const fs::path& path, const std::string& name) {
+  return path.parent_path() / (path.stem().string() + "." + name);
+}
+
+}  // namespace ps::apps

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace ps::apps {
+
+/// @brief A folder of outputs that appears when commit() succeeds, or not at all.
+///
+/// Everything is written into `TARGET.partial-PID` beside it. commit() renames that to the target,
+/// or, when the target is a folder already, moves its files over one by one: files of the same name
+/// are replaced, a numbered file (frame_00012.png) of an earlier, longer run is removed, and all
+/// others stay.
+class OutputFolder {
+ public:
+  /// Throws ps::Error when the target is a file, or when its parent is missing or cannot be
+  /// written.
+  explicit OutputFolder(const std::filesystem::path& target);
+  ~OutputFolder();  ///< removes what was not committed
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  /// Where to write a file of this relative name; makes its folder.
+  std::filesystem::path file(const std::string& name);
+  void commit();
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path partial_;
+};
+
+/// @brief Fails before the work, not after it: throws ps::Error unless `path` has one of the
+/// extensions (with their dots; empty = any), is no folder, and lies in a folder that can be
+/// written.
+void check_output_file(const std::filesystem::path& path,
+                       const std::vector<std::string>& extensions);
+
+/// @return the extension in lower case, with its dot
+std::string extension_of(const std::filesystem::path& path);
+
+/// @return `fused.ply`, "report.json" -> `fused.report.json`, in the same folder
+std::filesystem::path beside(const std::filesystem::path& path, const std::string& name);
+
+}  // namespace ps::apps

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/program.h"
+
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <opencv2/core.hpp>
+#include <opencv2/core/utils/logger.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "apps/interrupt.h"
+#include "libps/core/parallel.h"
+
+namespace ps::apps {
+namespace {
+
+void add_common_options(CLI::App& program, Context& context) {
+  program.option_defaults()->always_capture_default();
+  program.add_flag("-v,--verbose", context.verbose, "Say more on stderr");
+  program.add_flag("-q,--quiet", context.quiet, "Say nothing but errors");
+  program.add_option("--seed", context.seed, "Seed of everything that is drawn at random")
+      ->type_name("N");
+  program.add_option("--threads", context.threads, "Threads to use; 0 = one for each core")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024));
+  program.add_flag("--json", context.json, "Print the report as JSON on stdout");
+  program.set_version_flag("--version", "pixelsynth " PS_VERSION);
+  program.fallthrough();  // so that these are also taken after the verb
+}
+
+/// Libraries below us must not write to the terminal: one failure is one line.
+void hush_libraries() {
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  cv::redirectError([](int, const char*, const char*, const char*, int, void*) { return 0; });
+}
+
+int report_usage(const CLI::App& program, const CLI::ParseError& error) {
+  std::string verb;
+  for (const CLI::App* parsed : program.get_subcommands()) verb += " " + parsed->get_name();
+  std::fprintf(stderr, "pixelsynth%s: %s; see pixelsynth%s --help\n", verb.c_str(),
+               one_line(error.what()).c_str(), verb.c_str());
+  return 2;
+}
+
+int fail(const std::string& message) noexcept {
+  std::fprintf(stderr, "pixelsynth: %s\n", message.c_str());
+  return 1;
+}
+
+}  // namespace
+
+int run(int argc, char** argv) {
+  hush_libraries();
+  Context context;
+  CLI::App program(
+      "pixelsynth: photos and RGB-D frames to one coloured point cloud, seen from anywhere.\n"
+      "Exit status: 0 done, 1 failed (one line on stderr says why), 2 wrong usage.",
+      "pixelsynth");
+  add_common_options(program, context);
+  program.parse_complete_callback([&] { set_threads(context.threads); });
+  add_scene(program, context);
+  add_fuse(program, context);
+  add_render(program, context);
+  add_view(program, context);
+  add_probe(program, context);
+  program.require_subcommand(0, 1);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& asked) {  // --help, --version
+    return program.exit(asked);
+  } catch (const CLI::ParseError& error) {
+    return report_usage(program, error);
+  }
+  if (program.get_subcommands().empty()) std::printf("%s", program.help().c_str());
+  return 0;
+}
+
+int report_failure() noexcept try { throw; } catch (const Interrupted&) {
+  fail("interrupted; nothing was written");
+  die_of_interrupt();
+} catch (const std::bad_alloc&) {
+  return fail("out of memory; try fewer or smaller views, or a smaller --size");
+} catch (const cv::Exception& error) {
+  if (error.code == cv::Error::StsNoMem) return fail("out of memory; try a smaller --size");
+  return fail("OpenCV: " + one_line(error.err));
+} catch (const std::exception& error) {
+  return fail(one_line(error.what()));
+} catch (...) {
+  return fail("unknown failure");
+}
+
+}  // namespace ps::apps

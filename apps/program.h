@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "apps/context.h"
+
+namespace ps::apps {
+
+/// @brief Runs `pixelsynth VERB ARGS`.
+/// @return 0 done, 2 wrong usage; failures are thrown
+int run(int argc, char** argv);
+
+/// @brief Prints the exception in flight as one line on stderr; to be called in a catch block.
+/// @return 1. Does not return when the user interrupted the program: it ends by that signal.
+int report_failure() noexcept;
+
+// Each adds one verb to the program: its options, its help, and what it does.
+void add_fuse(CLI::App& program, const Context& context);
+void add_render(CLI::App& program, const Context& context);
+void add_view(CLI::App& program, const Context& context);
+void add_scene(CLI::App& program, const Context& context);
+void add_probe(CLI::App& program, const Context& context);
+
+}  // namespace ps::apps

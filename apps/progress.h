@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <string>
+
+#include "apps/context.h"
+
+namespace ps::apps {
+
+/// @brief One line of a progress bar: `fuse  42% [=====>     ] 156/373  41.2/s  0:05 left`.
+/// @param width  columns the line may fill; the bar takes what the words leave
+std::string progress_line(const std::string& what, std::size_t done, std::size_t total,
+                          double seconds, int width);
+
+/// @brief A bar with rate and time left on stderr, when that is a terminal and the user wants
+/// words.
+class Progress {
+ public:
+  Progress(const Context& context, std::string what, std::size_t total);
+  ~Progress();  ///< clears the bar's line
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// Throws Interrupted when the user asked the program to end.
+  void update(std::size_t done);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::string what_;
+  std::size_t total_;
+  bool visible_;
+  bool drawn_ = false;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point last_;
+};
+
+}  // namespace ps::apps

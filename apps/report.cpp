@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/report.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "io/atomic_file.h"
+#include "libps/core/parallel.h"
+
+namespace ps::apps {
+namespace {
+
+/// A number where the text is one, else the text.
+Json value_of(const std::string& text) {
+  const Json value = Json::parse(text, nullptr, false);
+  return value.is_number() || value.is_boolean() ? value : Json(text);
+}
+
+Json value_of(const CLI::Option& option) {
+  if (option.get_items_expected_max() == 0) return option.count() > 0;  // a flag
+  const std::vector<std::string> given = option.results();
+  if (given.empty()) {
+    const std::string& otherwise = option.get_default_str();
+    return otherwise.empty() ? Json() : value_of(otherwise);
+  }
+  if (option.get_items_expected_max() == 1 && given.size() == 1) return value_of(given.front());
+  Json values = Json::array();
+  for (const std::string& value : given) values.push_back(value_of(value));
+  return values;
+}
+
+}  // namespace
+
+Json settings_of(const CLI::App& verb, const Context& context) {
+  Json settings;
+  settings["program"] = "pixelsynth";
+  settings["version"] = PS_VERSION;
+  settings["verb"] = verb.get_name();
+  settings["seed"] = context.seed;
+  settings["threads"] = threads();
+  Json& options = settings["options"] = Json::object();
+  for (const CLI::Option* option : verb.get_options()) {
+    const std::string name = option->get_single_name();
+    if (name != "help") options[name] = value_of(*option);
+  }
+  return settings;
+}
+
+Json to_json(const Intrinsics& k) {
+  return {{"width", k.width}, {"height", k.height}, {"fx", k.fx},
+          {"fy", k.fy},       {"cx", k.cx},         {"cy", k.cy}};
+}
+
+Json summary_of(const Cloud& cloud) {
+  std::size_t outpainted = 0;
+  Eigen::Vector3f low = Eigen::Vector3f::Zero(), high = Eigen::Vector3f::Zero();
+  if (!cloud.empty()) low = high = cloud.front().getVector3fMap();
+  for (const Point& point : cloud) {
+    outpainted += point.origin == static_cast<std::uint8_t>(Origin::outpainted);
+    low = low.cwiseMin(point.getVector3fMap());
+    high = high.cwiseMax(point.getVector3fMap());
+  }
+  Json json;
+  json["points"] = cloud.size();
+  json["observed"] = cloud.size() - outpainted;
+  json["outpainted"] = outpainted;
+  json["box_min_m"] = {low.x(), low.y(), low.z()};
+  json["box_max_m"] = {high.x(), high.y(), high.z()};
+  return json;
+}
+
+void write_json(const std::filesystem::path& path, const Json& json) {
+  AtomicFile file(path);
+  file.write(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  file.commit();
+}
+
+void print_report(const Context& context, const Json& report) {
+  if (!context.json) return;
+  const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace);
+  std::printf("%s\n", text.c_str());
+}
+
+double peak_memory_mib() {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+double Stopwatch::seconds() const {
+  using Seconds = std::chrono::duration<double>;
+  const double s = Seconds(std::chrono::steady_clock::now() - start_).count();
+  return std::round(s * 1000) / 1000;
+}
+
+}  // namespace ps::apps

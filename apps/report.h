@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "apps/context.h"
+#include "libps/geometry/camera.h"
+#include "libps/geometry/point.h"
+
+namespace ps::apps {
+
+/// Keeps the order in which keys were added.
+using Json = nlohmann::ordered_json;
+
+/// @return program, version, verb, seed, threads and every option of the verb: as given, else its
+/// default
+Json settings_of(const CLI::App& verb, const Context& context);
+
+/// @return width, height, fx, fy, cx, cy
+Json to_json(const Intrinsics& intrinsics);
+
+/// @return points, how many of them were observed and outpainted, and the box they fill, metres
+Json summary_of(const Cloud& cloud);
+
+/// @brief Writes indented JSON; the file appears whole or not at all. Throws ps::Error.
+void write_json(const std::filesystem::path& path, const Json& json);
+
+/// @brief Prints a report on stdout if the user asked for it.
+void print_report(const Context& context, const Json& report);
+
+/// @return the most memory this process has held so far, MiB
+double peak_memory_mib();
+
+/// Seconds since it was made, to the millisecond.
+class Stopwatch {
+ public:
+  double seconds() const;
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace ps::apps

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "apps/frame_list.h"
+#include "apps/interrupt.h"
+#include "apps/output.h"
+#include "apps/program.h"
+#include "apps/progress.h"
+#include "apps/report.h"
+#include "io/cloud_file.h"
+#include "io/intrinsics_file.h"
+#include "io/trajectory.h"
+#include "libps/core/error.h"
+#include "libps/scene/fuse.h"
+
+namespace ps::apps {
+namespace {
+
+struct FuseArguments {
+  std::vector<std::string> folders;
+  std::string output;
+  std::string frames;
+  FrameChoice choice;
+  double depth_scale = 1000;
+  FuseOptions fuse;
+  bool no_average = false;
+  bool keep_contradicted = false;
+};
+
+void add_input_options(CLI::App& verb, FuseArguments& a) {
+  verb.add_option("folders", a.folders,
+                  "RGB-D folders: color/, depth/, trajectory.txt, intrinsics.json; the poses of "
+                  "several folders must be of one world")
+      ->required()
+      ->type_name("DIR");
+  verb.add_option("-o,--output", a.output, "Cloud to write: .ply or .pcd")
+      ->required()
+      ->type_name("FILE");
+  verb.add_option("--frames", a.frames,
+                  "Only frames from A to B, both included, by timestamp or frame number; A: and :B "
+                  "are open")
+      ->type_name("A:B");
+  verb.add_option("--every", a.choice.every, "Only every Nth of these frames of each folder")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000000));
+  verb.add_option("--hold-out", a.choice.hold_out,
+                  "Leave out every Nth of what is left, to compare with; 0 = none")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1000000));
+  verb.add_option("--depth-scale", a.depth_scale, "Units of the depth files in a metre")
+      ->type_name("S")
+      ->check(CLI::Range(1e-6, 1e9));
+}
+
+void add_cloud_options(CLI::App& verb, SceneCloudOptions& o) {
+  const auto at_least_0 = CLI::Range(0.0, 1e9);
+  verb.add_option("--min-depth", o.lift.min_depth, "Skip what is nearer, metres")
+      ->type_name("M")
+      ->check(at_least_0);
+  verb.add_option("--max-depth", o.lift.max_depth, "Skip what is farther, metres")
+      ->type_name("M")
+      ->check(at_least_0);
+  verb.add_option("--edge-footprints", o.lift.edge_footprints,
+                  "Drop a pixel that flies at a depth edge: so many pixel widths behind one "
+                  "neighbour and before the opposite; 0 keeps all")
+      ->type_name("F")
+      ->check(at_least_0);
+  verb.add_option("--spacing", o.spacing, "Least distance between points, metres; 0 = by footprint")
+      ->type_name("M")
+      ->check(at_least_0);
+  verb.add_option("--spacing-footprints", o.spacing_footprints,
+                  "Least distance between points, in pixel widths at their distance")
+      ->type_name("F")
+      ->check(at_least_0);
+  verb.add_option("--tolerance-relative", o.tolerance_relative,
+                  "Two depths are one surface within this share of the depth ...")
+      ->type_name("X")
+      ->check(CLI::Range(0.0, 1.0));
+  verb.add_option("--tolerance-footprints", o.tolerance_footprints,
+                  "... plus so many pixel widths at their distance")
+      ->type_name("F")
+      ->check(at_least_0);
+  verb.add_option("--better-footprint", o.better_footprint,
+                  "A view replaces points it sees with less than this share of their pixel width")
+      ->type_name("X")
+      ->check(CLI::Range(0.0, 1.0));
+}
+
+std::vector<RgbdFolder> open_folders(const FuseArguments& a, const Context& context) {
+  std::vector<RgbdFolder> folders;
+  for (const std::string& path : a.folders) {
+    std::size_t skipped = 0;
+    folders.push_back(open_rgbd_folder(path, &skipped));
+    context.detail(path + ": " + std::to_string(folders.back().frames.size()) + " frames");
+    if (skipped > 0) {
+      context.warn(path + ": " + std::to_string(skipped) +
+                   " frames lack colour, depth or pose and are left out");
+    }
+  }
+  return folders;
+}
+
+std::vector<StampedPose> poses_of(const std::vector<ChosenFrame>& frames) {
+  std::vector<StampedPose> poses;
+  for (const ChosenFrame& chosen : frames) {
+    poses.push_back({chosen.frame.timestamp, chosen.frame.world_from_cam, "", {}});
+  }
+  return poses;
+}
+
+/// The cloud, and beside it how it was made and where from.
+void write_all(const FuseArguments& a, const Cloud& cloud, const FrameList& frames,
+               const Json& settings, const Json& report) {
+  const std::filesystem::path output(a.output);
+  write_cloud(output, cloud);
+  write_json(beside(output, "settings.json"), settings);
+  write_json(beside(output, "report.json"), report);
+  write_trajectory(beside(output, "trajectory.txt"), poses_of(frames.used));
+  write_intrinsics(beside(output, "intrinsics.json"), frames.used.front().folder->intrinsics);
+  if (!frames.held_out.empty()) {
+    write_trajectory(beside(output, "held-out.txt"), poses_of(frames.held_out));
+  }
+}
+
+Json report_of(const FuseReport& fused, const FrameList& frames, const Cloud& cloud) {
+  Json report = summary_of(cloud);
+  report["views"] = fused.views;
+  report["held_out"] = frames.held_out.size();
+  report["pixels"] = {{"lifted", fused.pixels.lifted},
+                      {"explained", fused.pixels.explained},
+                      {"duplicates", fused.pixels.duplicates},
+                      {"added", fused.pixels.added},
+                      {"replaced", fused.pixels.replaced}};
+  report["contradicted"] = fused.contradicted;
+  report["seconds"] = {{"load", fused.load_seconds}, {"add", fused.add_seconds}};
+  return report;
+}
+
+void run_fuse(const FuseArguments& a, const CLI::App& verb, const Context& context) {
+  FuseArguments resolved = a;
+  if (!a.frames.empty()) parse_frames(a.frames, resolved.choice);
+  resolved.fuse.cloud.average = !a.no_average;
+  resolved.fuse.remove_contradicted = !a.keep_contradicted;
+  check_output_file(a.output, {".ply", ".pcd"});
+  note_interrupts();
+  const Stopwatch total;
+  const std::vector<RgbdFolder> folders = open_folders(a, context);
+  const FrameList frames = choose_frames(folders, resolved.choice);
+  if (frames.used.empty()) throw Error(a.folders.front(), "no frame is left by --frames");
+
+  const ViewSource source = {frames.used.size(), [&](std::size_t i) {
+                               const ChosenFrame& chosen = frames.used[i];
+                               return load_frame(*chosen.folder, chosen.frame, a.depth_scale);
+                             }};
+  FuseReport fused;
+  Cloud cloud;
+  {
+    Progress progress(context, "fuse", source.count);
+    cloud = fuse(source, resolved.fuse, &fused, [&](std::size_t done, std::size_t) {
+      progress.update(done);
+      return true;
+    });
+  }
+  throw_if_interrupted();
+  Json report = report_of(fused, frames, cloud);
+  report["seconds"]["total"] = total.seconds();
+  report["peak_memory_mib"] = peak_memory_mib();
+  write_all(a, cloud, frames, settings_of(verb, context), report);
+  print_report(context, report);
+  char line[128];
+  std::snprintf(line, sizeof line, ": %zu points from %zu views in %.1f s", cloud.size(),
+                fused.views, total.seconds());
+  context.say(a.output + line);
+}
+
+}  // namespace
+
+void add_fuse(CLI::App& program, const Context& context) {
+  auto* verb = program.add_subcommand(
+      "fuse",
+      "RGB-D folders to one cloud without duplicates.\n"
+      "Beside fused.ply it writes fused.report.json, fused.settings.json, fused.trajectory.txt and "
+      "fused.intrinsics.json (and fused.held-out.txt).");
+  auto a = std::make_shared<FuseArguments>();
+  add_input_options(*verb, *a);
+  add_cloud_options(*verb, a->fuse.cloud);
+  verb->add_flag("--no-average", a->no_average,
+                 "Keep points where they were first seen, instead of averaging views");
+  verb->add_flag("--keep-contradicted", a->keep_contradicted,
+                 "Keep points that other views see through");
+  verb->callback([a, verb, &context] { run_fuse(*a, *verb, context); });
+}
+
+}  // namespace ps::apps

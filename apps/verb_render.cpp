@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "apps/cloud_arguments.h"
+#include "apps/frame_sink.h"
+#include "apps/interrupt.h"
+#include "apps/output.h"
+#include "apps/program.h"
+#include "apps/progress.h"
+#include "apps/report.h"
+#include "apps/start_pose.h"
+#include "io/trajectory.h"
+#include "libps/core/error.h"
+#include "libps/geometry/splat.h"
+#include "libps/scene/camera_path.h"
+
+namespace ps::apps {
+namespace {
+
+constexpr double kRadians = 3.14159265358979323846 / 180;
+
+struct RenderArguments {
+  CloudArguments cloud;
+  std::string output;
+  std::string trajectory = "circle";
+  std::string start;
+  int frames = 0;  ///< 0 = 64 on a built-in path, all poses of a file
+  double yaw = 34.4;
+  double pitch = 17.2;
+  double orbit = -1;  ///< below 0 = not given
+  SplatOptions splat;
+  std::vector<int> background = {0, 0, 0};
+  bool no_renormalise = false;
+  SinkOptions sink;
+};
+
+void add_path_options(CLI::App& verb, RenderArguments& a) {
+  verb.add_option(
+          "--trajectory", a.trajectory,
+          "Poses: a file (TUM, COLMAP images.txt, Open3D .log, RealEstate10K) or a built-in "
+          "path: circle, sway, left, right, up, down, up-left, up-right, down-left, "
+          "down-right (where the camera turns to)")
+      ->type_name("FILE|PATH");
+  verb.add_option("--start", a.start,
+                  "Trajectory file whose first pose starts a built-in path (default: "
+                  "trajectory.txt beside the cloud, else from outside)")
+      ->type_name("FILE");
+  verb.add_option("--frames", a.frames, "Number of frames; 0 = 64, or all poses of a file")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1000000));
+  verb.add_option("--yaw", a.yaw, "Degrees a built-in path turns to either side")
+      ->type_name("DEG")
+      ->check(CLI::Range(0.0, 180.0));
+  verb.add_option("--pitch", a.pitch, "Degrees a built-in path turns up or down")
+      ->type_name("DEG")
+      ->check(CLI::Range(0.0, 180.0));
+  verb.add_option("--orbit", a.orbit,
+                  "Turn about the point so many metres ahead; 0 = on the spot (default: on the "
+                  "spot, or about the cloud when seen from outside)")
+      ->type_name("M")
+      ->check(CLI::Range(0.0, 1e6))
+      ->default_str("");
+}
+
+void add_picture_options(CLI::App& verb, RenderArguments& a) {
+  verb.add_option("--radius", a.splat.radius, "Radius of a splat in pixels")
+      ->type_name("PX")
+      ->check(CLI::Range(0.01, 64.0));
+  verb.add_option("--points-per-pixel", a.splat.points_per_pixel,
+                  "Only the nearest so many points of a pixel count")
+      ->type_name("N")
+      ->check(CLI::Range(1, 65536));
+  verb.add_option("--background", a.background, "Colour where no point falls, 0 to 255 each")
+      ->type_name("R,G,B")
+      ->delimiter(',')
+      ->expected(3)
+      ->check(CLI::Range(0, 255));
+  verb.add_flag("--no-renormalise", a.no_renormalise,
+                "Let the background shine between points, as published");
+  verb.add_flag("--depth", a.sink.depth, "Also write depth: 16-bit PNG in millimetres, 0 = none");
+  verb.add_option("--fps", a.sink.frames_per_second, "Frames per second of a video")
+      ->type_name("N")
+      ->check(CLI::Range(0.1, 1000.0));
+}
+
+bool is_built_in(const std::string& trajectory) {
+  const auto& names = path_names();
+  return std::find(names.begin(), names.end(), trajectory) != names.end();
+}
+
+/// All poses of a file, or `frames` of them, evenly spread.
+std::vector<StampedPose> poses_of_file(const std::string& file, int frames) {
+  if (!std::filesystem::exists(file)) {
+    std::string choices;
+    for (const std::string& name : path_names()) choices += ", " + name;
+    throw Error("--trajectory", "there is no file '" + file + "'", "a file" + choices);
+  }
+  std::vector<StampedPose> all = read_trajectory(file);
+  const auto wanted = static_cast<std::size_t>(frames);
+  if (wanted == 0 || wanted >= all.size()) return all;
+  std::vector<StampedPose> some;
+  for (std::size_t i = 0; i < wanted; ++i) {
+    some.push_back(all[wanted == 1 ? 0 : i * (all.size() - 1) / (wanted - 1)]);
+  }
+  return some;
+}
+
+std::vector<Pose> poses_of_path(const RenderArguments& a, const Cloud& cloud,
+                                const Intrinsics& lens, const Context& context) {
+  const StartPose start = choose_start(a.start, a.cloud.cloud, cloud, lens, context);
+  PathOptions options;
+  if (a.frames > 0) options.frames = a.frames;
+  options.range_horizontal = a.yaw * kRadians;
+  options.range_vertical = a.pitch * kRadians;
+  options.orbit_radius = a.orbit >= 0 ? a.orbit : start.distance;
+  return camera_path(a.trajectory, start.world_from_cam, options);
+}
+
+struct Shot {
+  Intrinsics lens;
+  std::vector<Pose> poses;
+};
+
+Shot plan(const RenderArguments& a, const Cloud& cloud, const Context& context) {
+  constexpr int kWidth = 640, kHeight = 480;
+  Shot shot;
+  if (is_built_in(a.trajectory)) {
+    shot.lens = choose_lens(a.cloud, context, {kWidth, kHeight});
+    shot.poses = poses_of_path(a, cloud, shot.lens, context);
+  } else {
+    const auto stamped = poses_of_file(a.trajectory, a.frames);
+    shot.lens =
+        choose_lens(a.cloud, context, {kWidth, kHeight}, stamped.front().normalised_intrinsics);
+    for (const StampedPose& pose : stamped) shot.poses.push_back(pose.world_from_cam);
+  }
+  if (extension_of(a.output) == ".png") shot.poses.resize(1);
+  return shot;
+}
+
+SplatOptions splat_options(const RenderArguments& a) {
+  SplatOptions options = a.splat;
+  options.renormalise = !a.no_renormalise;
+  for (int c = 0; c < 3; ++c) {
+    options.background[c] = static_cast<float>(a.background[static_cast<std::size_t>(c)]) / 255;
+  }
+  return options;
+}
+
+void render(const RenderArguments& a, const Context& context) {
+  if (a.sink.depth && extension_of(a.output) == ".mp4") {
+    throw CLI::ValidationError("--depth", "a video holds no depth; -o DIR does");
+  }
+  if (!a.cloud.size.empty()) parse_size(a.cloud.size);  // before the work
+  note_interrupts();
+  const Stopwatch total;
+  const Cloud cloud = load_cloud(a.cloud);
+  const double load_seconds = total.seconds();
+  const Shot shot = plan(a, cloud, context);
+  const cv::Size size(shot.lens.width, shot.lens.height);
+  const auto sink = make_frame_sink(a.output, size, a.sink);
+  const SplatOptions options = splat_options(a);
+
+  double splat_seconds = 0, covered = 0;
+  {
+    Progress progress(context, "render", shot.poses.size());
+    for (std::size_t i = 0; i < shot.poses.size(); ++i) {
+      const Stopwatch one;
+      const Splat frame = splat(cloud, shot.lens, shot.poses[i], options);
+      splat_seconds += one.seconds();
+      covered += static_cast<double>(cv::countNonZero(frame.hit)) / size.area();
+      sink->add(frame);
+      progress.update(i + 1);
+    }
+  }
+  sink->finish(shot.poses, shot.lens);
+
+  const auto frames = static_cast<double>(shot.poses.size());
+  const Json report = {{"output", a.output},
+                       {"points", cloud.size()},
+                       {"frames", shot.poses.size()},
+                       {"lens", to_json(shot.lens)},
+                       {"covered_share", covered / frames},
+                       {"seconds",
+                        {{"total", total.seconds()},
+                         {"load", load_seconds},
+                         {"splat", splat_seconds},
+                         {"splat_per_frame", splat_seconds / frames}}},
+                       {"peak_memory_mib", peak_memory_mib()}};
+  if (covered == 0) context.warn("no point falls into any frame; another --start may see them");
+  print_report(context, report);
+  char line[160];
+  std::snprintf(line, sizeof line, ": %zu frames of %dx%d from %zu points in %.1f s",
+                shot.poses.size(), size.width, size.height, cloud.size(), total.seconds());
+  context.say(a.output + line);
+}
+
+}  // namespace
+
+void add_render(CLI::App& program, const Context& context) {
+  auto* verb = program.add_subcommand(
+      "render",
+      "Pictures or a video of a cloud along a camera path.\n"
+      "A folder gets frame_00000.png ..., trajectory.txt and intrinsics.json once all frames are "
+      "done; in a folder that exists already, files of these names are replaced and others stay. "
+      "A .png gets the first frame, an .mp4 a video that plays in browsers.");
+  auto a = std::make_shared<RenderArguments>();
+  a->cloud.add_to(*verb);
+  verb->add_option("-o,--output", a->output, "Folder, F.mp4 or F.png")
+      ->required()
+      ->type_name("OUT");
+  add_path_options(*verb, *a);
+  add_picture_options(*verb, *a);
+  verb->callback([a, &context] { render(*a, context); });
+}
+
+}  // namespace ps::apps

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <memory>
+#include <opencv2/imgproc.hpp>
+
+#include "apps/contact_sheet.h"
+#include "apps/interrupt.h"
+#include "apps/output.h"
+#include "apps/program.h"
+#include "apps/progress.h"
+#include "apps/report.h"
+#include "io/cloud_file.h"
+#include "io/depth_file.h"
+#include "io/image_bytes.h"
+#include "io/intrinsics_file.h"
+#include "io/photo.h"
+#include "io/trajectory.h"
+#include "libps/core/error.h"
+#include "libps/geometry/lift.h"
+#include "libps/geometry/splat.h"
+#include "libps/scene/camera_path.h"
+
+namespace ps::apps {
+namespace {
+
+struct SceneArguments {
+  std::string photo;
+  std::string output;
+  std::string depth;
+  double depth_scale = 1000;
+  std::string intrinsics;
+  double fov = 0;  ///< degrees across; 0 = not given
+  bool no_outpaint = false;
+  LiftOptions lift;
+};
+
+/// One picture of the scene: where it is taken from and what is seen there.
+struct SceneView {
+  std::string name;
+  Pose world_from_cam = Pose::Identity();
+  Splat splat;
+};
+
+std::string text_of(cv::Size size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+Depth read_depth_for(const SceneArguments& a, cv::Size photo, const Context& context) {
+  Depth depth = read_depth(a.depth, a.depth_scale);
+  if (depth.size() == photo) return depth;
+  const std::string sizes = "is " + text_of(depth.size()) + ", the photo " + text_of(photo);
+  if (!same_aspect(depth.size(), photo)) throw Error(a.depth, sizes, "the same aspect");
+  context.warn(a.depth + ": " + sizes + "; scaled to the photo's size");
+  Depth scaled;
+  cv::resize(depth, scaled, photo, 0, 0, cv::INTER_NEAREST_EXACT);
+  return scaled;
+}
+
+/// The lens: what the user says, else what the photo says, else 60 degrees; says which.
+Intrinsics choose_lens(const SceneArguments& a, const Photo& photo, const Context& context) {
+  constexpr double kDefaultFov = 60;
+  const int width = photo.color.cols, height = photo.color.rows;
+  if (!a.intrinsics.empty()) return read_intrinsics(a.intrinsics, width, height);
+  if (a.fov != 0) return intrinsics_from_fov(width, height, a.fov);
+  if (photo.focal_px) {
+    Intrinsics lens = intrinsics_from_fov(width, height, kDefaultFov);
+    lens.fx = lens.fy = *photo.focal_px;
+    check(lens, a.photo + ": EXIF focal length");
+    context.detail("lens: the photo's EXIF focal length");
+    return lens;
+  }
+  context.say("lens: 60 degrees across, as the photo does not say; --intrinsics or --fov does");
+  return intrinsics_from_fov(width, height, kDefaultFov);
+}
+
+View read_view(const SceneArguments& a, const Context& context) {
+  const Photo photo = read_photo(a.photo);
+  View view;
+  view.color = photo.color;
+  view.depth = read_depth_for(a, photo.color.size(), context);
+  view.intrinsics = choose_lens(a, photo, context);
+  check(view, a.photo);
+  return view;
+}
+
+/// The input's own pose and the extremes of the eight directions (SPEC.md 2).
+std::vector<SceneView> render_views(const Cloud& cloud, const Intrinsics& lens,
+                                    const Context& context) {
+  std::vector<SceneView> views = {{"input", Pose::Identity(), {}}};
+  PathOptions to_the_extreme;
+  to_the_extreme.frames = 2;
+  for (const std::string& name : direction_names()) {
+    views.push_back({name, camera_path(name, Pose::Identity(), to_the_extreme).back(), {}});
+  }
+  SplatOptions options;
+  options.renormalise = true;
+  Progress progress(context, "views", views.size());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    views[i].splat = splat(cloud, lens, views[i].world_from_cam, options);
+    progress.update(i + 1);
+  }
+  return views;
+}
+
+/// Each view where it looks to: up-left in the upper left corner, the input in the middle.
+Image preview_of(const std::vector<SceneView>& views) {
+  std::vector<SheetTile> tiles;
+  for (const SceneView& view : views) {
+    const auto says = [&](const char* word) { return view.name.find(word) != std::string::npos; };
+    tiles.push_back({view.name, view.splat.color, 1 - (says("up") ? 1 : 0) + (says("down") ? 1 : 0),
+                     1 - (says("left") ? 1 : 0) + (says("right") ? 1 : 0)});
+  }
+  return contact_sheet(tiles);
+}
+
+Json report_of(const Cloud& cloud, const View& view, const std::vector<SceneView>& views) {
+  Json report = summary_of(cloud);
+  const auto known = static_cast<std::size_t>(cv::countNonZero(view.depth > 0));
+  report["pixels"] = {{"photo", view.depth.total()},
+                      {"depth_known", known},
+                      {"lifted", cloud.size()},
+                      {"dropped", known - cloud.size()}};
+  report["lens"] = to_json(view.intrinsics);
+  for (const SceneView& seen : views) {
+    report["covered_share"][seen.name] = static_cast<double>(cv::countNonZero(seen.splat.hit)) /
+                                         static_cast<double>(view.depth.total());
+  }
+  return report;
+}
+
+void write_all(OutputFolder& folder, const Cloud& cloud, const View& view,
+               const std::vector<SceneView>& views) {
+  write_cloud(folder.file("scene.ply"), cloud);
+  std::vector<StampedPose> poses;
+  for (const SceneView& seen : views) {
+    throw_if_interrupted();
+    write_image(folder.file("views/" + seen.name + ".png"), seen.splat.color);
+    poses.push_back({static_cast<double>(poses.size()), seen.world_from_cam, "", {}});
+  }
+  write_trajectory(folder.file("trajectory.txt"), poses);
+  write_intrinsics(folder.file("intrinsics.json"), view.intrinsics);
+  write_image(folder.file("preview.png"), preview_of(views));
+}
+
+void check_networks(const SceneArguments& a) {
+  if (a.depth.empty()) {
+    throw Error("scene", "this build has no networks yet, so it cannot estimate depth",
+                "--depth FILE, the photo's depth image");
+  }
+  if (!a.no_outpaint) {
+    throw Error("scene", "this build has no networks yet, so it cannot outpaint",
+                "--no-outpaint, for a scene of what the photo shows");
+  }
+}
+
+void run_scene(const SceneArguments& a, const CLI::App& verb, const Context& context) {
+  check_networks(a);
+  note_interrupts();
+  const Stopwatch total;
+  OutputFolder folder(a.output);
+  const View view = read_view(a, context);
+  const Cloud cloud = lift(view, 0, Origin::observed, a.lift);
+  if (cloud.empty()) throw Error(a.depth, "no pixel can be lifted", "depth in the range asked for");
+  const std::vector<SceneView> views = render_views(cloud, view.intrinsics, context);
+  write_all(folder, cloud, view, views);
+  Json report = report_of(cloud, view, views);
+  report["seconds"] = {{"total", total.seconds()}};
+  report["peak_memory_mib"] = peak_memory_mib();
+  write_json(folder.file("settings.json"), settings_of(verb, context));
+  write_json(folder.file("report.json"), report);
+  throw_if_interrupted();
+  folder.commit();
+  print_report(context, report);
+  char line[96];
+  std::snprintf(line, sizeof line, ": %zu points, %zu views in %.1f s", cloud.size(), views.size(),
+                total.seconds());
+  context.say(a.output + line);
+}
+
+void add_options(CLI::App& verb, SceneArguments& a) {
+  verb.add_option("photo", a.photo, "Photo: JPEG, PNG, TIFF, WebP, ...")
+      ->required()
+      ->type_name("PHOTO");
+  verb.add_option("-o,--output", a.output, "Folder to write")->required()->type_name("OUT");
+  verb.add_option("--depth", a.depth,
+                  "The photo's depth: 16-bit PNG, or metres as PFM, 32-bit TIFF or EXR")
+      ->type_name("FILE");
+  verb.add_option("--depth-scale", a.depth_scale, "Units of a 16-bit depth file in a metre")
+      ->type_name("S")
+      ->check(CLI::Range(1e-6, 1e9));
+  auto* file = verb.add_option("--intrinsics", a.intrinsics,
+                               "Lens: Open3D JSON, COLMAP cameras.txt or 3x3 text")
+                   ->type_name("FILE");
+  verb.add_option("--fov", a.fov,
+                  "Lens: horizontal field of view in degrees (default: from EXIF, else 60)")
+      ->type_name("DEG")
+      ->check(CLI::Range(1.0, 179.0))
+      ->excludes(file)
+      ->default_str("");
+  verb.add_flag("--no-outpaint", a.no_outpaint, "Invent nothing: only what the photo shows");
+  verb.add_option("--min-depth", a.lift.min_depth, "Skip what is nearer, metres")
+      ->type_name("M")
+      ->check(CLI::Range(0.0, 1e9));
+  verb.add_option("--max-depth", a.lift.max_depth, "Skip what is farther, metres")
+      ->type_name("M")
+      ->check(CLI::Range(0.0, 1e9));
+  verb.add_option("--edge-footprints", a.lift.edge_footprints,
+                  "Drop a pixel that flies at a depth edge: so many pixel widths behind one "
+                  "neighbour and before the opposite; 0 keeps all")
+      ->type_name("F")
+      ->check(CLI::Range(0.0, 1e9));
+}
+
+}  // namespace
+
+void add_scene(CLI::App& program, const Context& context) {
+  auto* verb = program.add_subcommand(
+      "scene",
+      "A photo and its depth to a scene: scene.ply, views/*.png to eight sides, preview.png, "
+      "trajectory.txt, intrinsics.json, report.json and settings.json in one folder.\n"
+      "The folder appears when all is done; in a folder that exists already, files of these names "
+      "are replaced and others stay. The world is the photo's camera: x right, y down, z forward.");
+  auto a = std::make_shared<SceneArguments>();
+  add_options(*verb, *a);
+  verb->callback([a, verb, &context] { run_scene(*a, *verb, context); });
+}
+
+}  // namespace ps::apps
