@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "apps/output.h"
+#include "apps/program.h"
 #include "io/cloud_file.h"
 #include "io/intrinsics_file.h"
 #include "libps/core/error.h"
@@ -41,9 +42,12 @@ void CloudArguments::add_to(CLI::App& verb) {
                    ->type_name("FILE");
   verb.add_option("--fov", fov, "Lens: horizontal field of view in degrees")
       ->type_name("DEG")
-      ->check(CLI::Range(1.0, 179.0))
+      ->check(in_range(1, 179))
       ->excludes(file)
       ->default_str("");
+  verb.add_option("--up", up, "The world's axis that points up, for a start from outside")
+      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
+      ->type_name("AXIS");
 }
 
 cv::Size parse_size(const std::string& text) {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/program.h"
 
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
-#include <stdexcept>
+#include <sstream>
 #include <string>
 
 #include "apps/interrupt.h"
@@ -23,7 +25,7 @@ void add_common_options(CLI::App& program, Context& context) {
       ->type_name("N");
   program.add_option("--threads", context.threads, "Threads to use; 0 = one for each core")
       ->type_name("N")
-      ->check(CLI::Range(0, 1024));
+      ->check(in_range(0, 1024));
   program.add_flag("--json", context.json, "Print the report as JSON on stdout");
   program.set_version_flag("--version", "pixelsynth " PS_VERSION);
   program.fallthrough();  // so that these are also taken after the verb
@@ -74,6 +76,25 @@ int run(int argc, char** argv) {
   }
   if (program.get_subcommands().empty()) std::printf("%s", program.help().c_str());
   return 0;
+}
+
+CLI::Validator in_range(double low, double high) {
+  const auto words = [](double value) {
+    std::ostringstream text;
+    text << value;
+    return text.str();
+  };
+  const std::string range = high < kNoBound ? words(low) + " to " + words(high)
+                            : low > 0       ? "more than 0"
+                                            : "0 or more";
+  const auto check = [=](const std::string& text) -> std::string {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    const bool number = end != text.c_str() && *end == '\0' && std::isfinite(value);
+    if (number && value >= low && value <= high) return "";
+    return "'" + text + "' is out of range; expected " + range;
+  };
+  return CLI::Validator(check, high < kNoBound ? range : "");
 }
 
 int report_failure() noexcept try { throw; } catch (const Interrupted&) {

@@ -15,6 +15,12 @@ int run(int argc, char** argv);
 /// @return 1. Does not return when the user interrupted the program: it ends by that signal.
 int report_failure() noexcept;
 
+/// @brief Checks that an option is a finite number in [low, high]; CLI::Range lets NaN pass.
+CLI::Validator in_range(double low, double high);
+
+/// The highest value of options without a natural bound.
+constexpr double kNoBound = 1e9;
+
 // Each adds one verb to the program: its options, its help, and what it does.
 void add_fuse(CLI::App& program, const Context& context);
 void add_render(CLI::App& program, const Context& context);

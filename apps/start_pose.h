@@ -3,9 +3,7 @@
 
 #include <string>
 
-#include "apps/context.h"
-#include "libps/geometry/camera.h"
-#include "libps/geometry/point.h"
+#include "apps/cloud_arguments.h"
 
 namespace ps::apps {
 
@@ -18,7 +16,7 @@ struct StartPose {
 /// @brief The first pose of `file`; if that is empty, of the trajectory beside the cloud; if there
 /// is none, a pose that shows the cloud from outside. Says which of the latter two. Throws
 /// ps::Error on a bad file.
-StartPose choose_start(const std::string& file, const std::string& cloud_path, const Cloud& cloud,
+StartPose choose_start(const std::string& file, const CloudArguments& arguments, const Cloud& cloud,
                        const Intrinsics& lens, const Context& context);
 
 }  // namespace ps::apps

@@ -44,18 +44,18 @@ void add_input_options(CLI::App& verb, FuseArguments& a) {
       ->type_name("A:B");
   verb.add_option("--every", a.choice.every, "Only every Nth of these frames of each folder")
       ->type_name("N")
-      ->check(CLI::Range(1, 1000000));
+      ->check(in_range(1, 1000000));
   verb.add_option("--hold-out", a.choice.hold_out,
                   "Leave out every Nth of what is left, to compare with; 0 = none")
       ->type_name("N")
-      ->check(CLI::Range(0, 1000000));
+      ->check(in_range(0, 1000000));
   verb.add_option("--depth-scale", a.depth_scale, "Units of the depth files in a metre")
       ->type_name("S")
-      ->check(CLI::Range(1e-6, 1e9));
+      ->check(in_range(1e-6, kNoBound));
 }
 
 void add_cloud_options(CLI::App& verb, SceneCloudOptions& o) {
-  const auto at_least_0 = CLI::Range(0.0, 1e9);
+  const auto at_least_0 = in_range(0, kNoBound);
   verb.add_option("--min-depth", o.lift.min_depth, "Skip what is nearer, metres")
       ->type_name("M")
       ->check(at_least_0);
@@ -77,7 +77,7 @@ void add_cloud_options(CLI::App& verb, SceneCloudOptions& o) {
   verb.add_option("--tolerance-relative", o.tolerance_relative,
                   "Two depths are one surface within this share of the depth ...")
       ->type_name("X")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(in_range(0, 1));
   verb.add_option("--tolerance-footprints", o.tolerance_footprints,
                   "... plus so many pixel widths at their distance")
       ->type_name("F")
@@ -85,7 +85,7 @@ void add_cloud_options(CLI::App& verb, SceneCloudOptions& o) {
   verb.add_option("--better-footprint", o.better_footprint,
                   "A view replaces points it sees with less than this share of their pixel width")
       ->type_name("X")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(in_range(0, 1));
 }
 
 std::vector<RgbdFolder> open_folders(const FuseArguments& a, const Context& context) {

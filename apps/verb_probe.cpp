@@ -113,14 +113,14 @@ void add_probe(CLI::App& program, const Context& context) {
       ->type_name("TEXT");
   verb->add_option("--size", a->size, "Side of the image in pixels")
       ->type_name("S")
-      ->check(CLI::Range(1, 8192));
+      ->check(in_range(1, 8192));
   verb->add_option("--radius", a->splat.radius, "Radius of a splat in pixels")
       ->type_name("PX")
-      ->check(CLI::Range(0.01, 64.0));
+      ->check(in_range(0.01, 64));
   verb->add_option("--points-per-pixel", a->splat.points_per_pixel,
                    "Only the nearest so many points of a pixel count")
       ->type_name("N")
-      ->check(CLI::Range(1, 65536));
+      ->check(in_range(1, 65536));
   verb->callback([a, &context] { probe_splat(*a, context); });
 }
 

@@ -49,40 +49,40 @@ void add_path_options(CLI::App& verb, RenderArguments& a) {
       ->type_name("FILE");
   verb.add_option("--frames", a.frames, "Number of frames; 0 = 64, or all poses of a file")
       ->type_name("N")
-      ->check(CLI::Range(0, 1000000));
+      ->check(in_range(0, 1000000));
   verb.add_option("--yaw", a.yaw, "Degrees a built-in path turns to either side")
       ->type_name("DEG")
-      ->check(CLI::Range(0.0, 180.0));
+      ->check(in_range(0, 180));
   verb.add_option("--pitch", a.pitch, "Degrees a built-in path turns up or down")
       ->type_name("DEG")
-      ->check(CLI::Range(0.0, 180.0));
+      ->check(in_range(0, 180));
   verb.add_option("--orbit", a.orbit,
                   "Turn about the point so many metres ahead; 0 = on the spot (default: on the "
                   "spot, or about the cloud when seen from outside)")
       ->type_name("M")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(in_range(0, 1e6))
       ->default_str("");
 }
 
 void add_picture_options(CLI::App& verb, RenderArguments& a) {
   verb.add_option("--radius", a.splat.radius, "Radius of a splat in pixels")
       ->type_name("PX")
-      ->check(CLI::Range(0.01, 64.0));
+      ->check(in_range(0.01, 64));
   verb.add_option("--points-per-pixel", a.splat.points_per_pixel,
                   "Only the nearest so many points of a pixel count")
       ->type_name("N")
-      ->check(CLI::Range(1, 65536));
+      ->check(in_range(1, 65536));
   verb.add_option("--background", a.background, "Colour where no point falls, 0 to 255 each")
       ->type_name("R,G,B")
       ->delimiter(',')
       ->expected(3)
-      ->check(CLI::Range(0, 255));
+      ->check(in_range(0, 255));
   verb.add_flag("--no-renormalise", a.no_renormalise,
                 "Let the background shine between points, as published");
   verb.add_flag("--depth", a.sink.depth, "Also write depth: 16-bit PNG in millimetres, 0 = none");
   verb.add_option("--fps", a.sink.frames_per_second, "Frames per second of a video")
       ->type_name("N")
-      ->check(CLI::Range(0.1, 1000.0));
+      ->check(in_range(0.1, 1000));
 }
 
 bool is_built_in(const std::string& trajectory) {
@@ -109,7 +109,7 @@ std::vector<StampedPose> poses_of_file(const std::string& file, int frames) {
 
 std::vector<Pose> poses_of_path(const RenderArguments& a, const Cloud& cloud,
                                 const Intrinsics& lens, const Context& context) {
-  const StartPose start = choose_start(a.start, a.cloud.cloud, cloud, lens, context);
+  const StartPose start = choose_start(a.start, a.cloud, cloud, lens, context);
   PathOptions options;
   if (a.frames > 0) options.frames = a.frames;
   options.range_horizontal = a.yaw * kRadians;

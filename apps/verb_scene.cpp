@@ -187,28 +187,28 @@ void add_options(CLI::App& verb, SceneArguments& a) {
       ->type_name("FILE");
   verb.add_option("--depth-scale", a.depth_scale, "Units of a 16-bit depth file in a metre")
       ->type_name("S")
-      ->check(CLI::Range(1e-6, 1e9));
+      ->check(in_range(1e-6, kNoBound));
   auto* file = verb.add_option("--intrinsics", a.intrinsics,
                                "Lens: Open3D JSON, COLMAP cameras.txt or 3x3 text")
                    ->type_name("FILE");
   verb.add_option("--fov", a.fov,
                   "Lens: horizontal field of view in degrees (default: from EXIF, else 60)")
       ->type_name("DEG")
-      ->check(CLI::Range(1.0, 179.0))
+      ->check(in_range(1, 179))
       ->excludes(file)
       ->default_str("");
   verb.add_flag("--no-outpaint", a.no_outpaint, "Invent nothing: only what the photo shows");
   verb.add_option("--min-depth", a.lift.min_depth, "Skip what is nearer, metres")
       ->type_name("M")
-      ->check(CLI::Range(0.0, 1e9));
+      ->check(in_range(0, kNoBound));
   verb.add_option("--max-depth", a.lift.max_depth, "Skip what is farther, metres")
       ->type_name("M")
-      ->check(CLI::Range(0.0, 1e9));
+      ->check(in_range(0, kNoBound));
   verb.add_option("--edge-footprints", a.lift.edge_footprints,
                   "Drop a pixel that flies at a depth edge: so many pixel widths behind one "
                   "neighbour and before the opposite; 0 keeps all")
       ->type_name("F")
-      ->check(CLI::Range(0.0, 1e9));
+      ->check(in_range(0, kNoBound));
 }
 
 }  // namespace

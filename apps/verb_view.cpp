@@ -21,7 +21,7 @@ struct ViewArguments {
   std::string trajectory;
   std::string start;
   std::string color_by = "photo";
-  double point_size = 2;
+  double point_size = 3;
   bool no_axes = false;
   bool no_cameras = false;
 };
@@ -45,7 +45,7 @@ ViewerOptions viewer_options(const ViewArguments& a, const Cloud& cloud, const C
   options.trajectory = read_poses(a);
   const bool given = a.start.empty() && !a.trajectory.empty();
   options.start =
-      choose_start(given ? a.trajectory : a.start, a.cloud.cloud, cloud, options.lens, context)
+      choose_start(given ? a.trajectory : a.start, a.cloud, cloud, options.lens, context)
           .world_from_cam;
   const auto& names = color_names();
   options.color_by =
@@ -94,7 +94,7 @@ void add_view(CLI::App& program, const Context& context) {
       ->type_name("WHAT");
   verb->add_option("--point-size", a->point_size, "Size of a point in pixels")
       ->type_name("PX")
-      ->check(CLI::Range(1.0, 32.0));
+      ->check(in_range(1, 32));
   verb->add_flag("--no-axes", a->no_axes, "Leave out the world's axes");
   verb->add_flag("--no-cameras", a->no_cameras, "Leave out the cameras");
   verb->callback([a, &context] { view(*a, context); });

@@ -71,7 +71,8 @@ Window::Window(const Cloud& cloud, const ViewerOptions& options, bool visible)
       options_(options),
       distance_(median_distance(cloud, options.start)),
       points_(make_points(cloud)),
-      frusta_(make_frusta(options.trajectory, options.lens, 0.03 * distance_)) {
+      frusta_(make_frusta(options.trajectory, options.lens, 0.03 * distance_,
+                          options.start.translation())) {
   renderer_->SetBackground(0.12, 0.13, 0.15);
   renderer_->AddActor(points_);
   renderer_->AddActor(frusta_);

@@ -14,12 +14,12 @@ struct ViewerOptions {
   cv::Size size = {1024, 768};
   std::string title = "pixelsynth";
   ColorBy color_by = ColorBy::photo;
-  double point_size = 2;  ///< pixels
+  double point_size = 3;  ///< pixels
   bool axes = true;
   bool cameras = true;
   Intrinsics lens;                ///< of the start and of the cameras drawn
   Pose start = Pose::Identity();  ///< where one looks from; y down is drawn downwards
-  std::vector<Pose> trajectory;   ///< drawn as frusta
+  std::vector<Pose> trajectory;   ///< drawn as frusta, but for those that the start would sit in
 };
 
 /// @brief Opens a window and returns when the user closes it. Needs a Display.

@@ -75,13 +75,14 @@ void set_colors(vtkActor& points, const std::vector<Rgb>& colors) {
 }
 
 vtkSmartPointer<vtkActor> make_frusta(const std::vector<Pose>& poses, const Intrinsics& lens,
-                                      double length) {
+                                      double length, const Eigen::Vector3d& eye) {
   constexpr std::size_t kMost = 200;
   const std::size_t step = poses.size() / kMost + 1;
   vtkNew<vtkPoints> points;
   vtkNew<vtkCellArray> lines;
   std::vector<vtkIdType> tips;
   for (std::size_t i = 0; i < poses.size(); i += step) {
+    if ((poses[i].translation() - eye).norm() < 2 * length) continue;
     tips.push_back(add_pyramid(*points, *lines, poses[i], lens, length));
   }
   if (tips.size() > 1) lines->InsertNextCell(static_cast<vtkIdType>(tips.size()), tips.data());

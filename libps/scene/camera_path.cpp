@@ -2,8 +2,8 @@
 #include "libps/scene/camera_path.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <utility>
 
 #include "libps/core/error.h"
 #include "libps/geometry/point.h"
@@ -72,6 +72,45 @@ void check_options(const std::string& name, const PathOptions& options) {
   }
 }
 
+/// Camera axes in the world when `up` is up; of the two level axes the later one is looked along.
+Eigen::Matrix3d level_camera(const std::string& up) {
+  const bool minus = !up.empty() && up.front() == '-';
+  const std::string axis = minus ? up.substr(1) : up;
+  if (axis != "x" && axis != "y" && axis != "z") {
+    throw Error("framing", "no axis is named '" + up + "'", "x, y, z, -x, -y or -z");
+  }
+  const int number = axis.front() - 'x';
+  Eigen::Matrix3d world_from_cam;
+  world_from_cam.col(1) = (minus ? 1 : -1) * Eigen::Vector3d::Unit(number);
+  world_from_cam.col(2) = Eigen::Vector3d::Unit(number == 2 ? 1 : 2);
+  world_from_cam.col(0) = world_from_cam.col(1).cross(world_from_cam.col(2));
+  return world_from_cam;
+}
+
+/// The corners, in the camera's axes, of a box that leaves out half a percent on each side.
+std::pair<Eigen::Vector3d, Eigen::Vector3d> box_without_outliers(
+    const pcl::PointCloud<Point>& cloud, const Eigen::Matrix3d& world_from_cam) {
+  constexpr std::size_t kSamples = 200000;
+  constexpr double kOutliers = 0.005;
+  const std::size_t step = std::max<std::size_t>(1, cloud.size() / kSamples);
+  Eigen::Vector3d low, high;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3f direction = world_from_cam.col(axis).cast<float>();
+    std::vector<float> values;
+    for (std::size_t i = 0; i < cloud.size(); i += step) {
+      values.push_back(direction.dot(cloud[i].getVector3fMap()));
+    }
+    const auto rank = [&](double share) {
+      const auto nth = values.begin() + std::lround(share * static_cast<double>(values.size() - 1));
+      std::nth_element(values.begin(), nth, values.end());
+      return static_cast<double>(*nth);
+    };
+    low[axis] = rank(kOutliers);
+    high[axis] = rank(1 - kOutliers);
+  }
+  return {low, high};
+}
+
 }  // namespace
 
 const std::vector<std::string>& direction_names() {
@@ -102,29 +141,20 @@ std::vector<Pose> camera_path(const std::string& name, const Pose& start,
   return poses;
 }
 
-Framing frame_cloud(const pcl::PointCloud<Point>& cloud, const Intrinsics& intrinsics) {
+Framing frame_cloud(const pcl::PointCloud<Point>& cloud, const Intrinsics& intrinsics,
+                    const std::string& up) {
   check(intrinsics, "framing");
   if (cloud.empty()) throw Error("framing", "the cloud is empty", "at least one point");
-  constexpr std::size_t kSamples = 200000;
-  const std::size_t step = std::max<std::size_t>(1, cloud.size() / kSamples);
-  Eigen::Vector3d low, high;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::vector<float> values;
-    for (std::size_t i = 0; i < cloud.size(); i += step) values.push_back(cloud[i].data[axis]);
-    const auto rank = [&](double share) {
-      const auto nth = values.begin() + std::lround(share * static_cast<double>(values.size() - 1));
-      std::nth_element(values.begin(), nth, values.end());
-      return static_cast<double>(*nth);
-    };
-    low[axis] = rank(0.02);
-    high[axis] = rank(0.98);
-  }
+  Framing framing;
+  framing.world_from_cam.linear() = level_camera(up);
+  const auto [low, high] = box_without_outliers(cloud, framing.world_from_cam.linear());
   const Eigen::Vector3d half = (high - low) / 2;
   const double fit_width = half.x() * 2 * intrinsics.fx / intrinsics.width;
   const double fit_height = half.y() * 2 * intrinsics.fy / intrinsics.height;
-  Framing framing;
   framing.distance = std::max({fit_width, fit_height, 0.1}) * 1.05 + half.z();
-  framing.world_from_cam.translation() = (low + high) / 2 - Eigen::Vector3d(0, 0, framing.distance);
+  framing.world_from_cam.translation() =
+      framing.world_from_cam.linear() *
+      ((low + high) / 2 - Eigen::Vector3d(0, 0, framing.distance));
   return framing;
 }
 

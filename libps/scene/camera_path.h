@@ -49,10 +49,13 @@ struct Framing {
   double distance = 0;  ///< metres from the camera to the middle of the cloud
 };
 
-/// @brief A camera with the world's axes (x right, y down, looking along z) that stands outside the
-/// cloud and sees all of it but its outermost 2 % along each axis.
-/// Throws ps::Error when the cloud is empty or the intrinsics are unsound.
-Framing frame_cloud(const pcl::PointCloud<Point>& cloud, const Intrinsics& intrinsics);
+/// @brief A camera that stands outside the cloud, level, and sees all of it but its outermost 1 %
+/// along each axis.
+/// @param up  the world's axis that points up: x, y, z, or -x, -y, -z. With -y, as in a photo's own
+/// world, the camera looks along z with x to the right.
+/// Throws ps::Error when the cloud is empty, the intrinsics are unsound or `up` is none of these.
+Framing frame_cloud(const pcl::PointCloud<Point>& cloud, const Intrinsics& intrinsics,
+                    const std::string& up = "-y");
 
 /// @brief The same lens behind a picture of another size: keeps the horizontal field of view and
 /// square pixels, and crops or extends the height evenly, so nothing is squashed.

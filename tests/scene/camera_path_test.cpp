@@ -187,6 +187,28 @@ TEST(FrameCloud, sees_every_corner_of_a_box_and_fills_the_view) {
   }
 }
 
+TEST(FrameCloud, the_axis_that_is_up_is_up_in_the_picture) {
+  const Intrinsics camera = intrinsics_from_fov(640, 480, 60);
+  const Cloud cloud = box_cloud(1, 2, 3);
+  const Eigen::Vector3d middle(10, 20, 30);
+  for (const std::string up : {"x", "y", "z", "-x", "-y", "-z"}) {
+    const Pose pose = frame_cloud(cloud, camera, up).world_from_cam;
+    EXPECT_NO_THROW(checked_pose(pose.matrix(), up));
+    const double sign = up.front() == '-' ? -1 : 1;
+    const Eigen::Vector3d higher = middle + sign * 0.5 * Eigen::Vector3d::Unit(up.back() - 'x');
+    const Eigen::Vector2d pixel = camera.project(pose.inverse() * higher);
+    EXPECT_NEAR(pixel.x(), camera.cx, 1e-6) << up;
+    EXPECT_LT(pixel.y(), camera.cy - 10) << up;
+  }
+  EXPECT_THROW(frame_cloud(cloud, camera, "w"), Error);
+  EXPECT_THROW(frame_cloud(cloud, camera, ""), Error);
+}
+
+TEST(FrameCloud, by_default_the_camera_has_the_axes_of_the_world) {
+  const Framing framing = frame_cloud(box_cloud(1, 1, 1), intrinsics_from_fov(64, 48, 60));
+  EXPECT_EQ(framing.world_from_cam.linear(), Eigen::Matrix3d::Identity());
+}
+
 TEST(FrameCloud, one_point_is_enough_and_none_is_an_error) {
   const Intrinsics camera = intrinsics_from_fov(640, 480, 60);
   EXPECT_GT(frame_cloud(box_cloud(0, 0, 0), camera).distance, 0);
