@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/geometry/scene_cloud.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "libps/core/error.h"
+#include "libps/core/parallel.h"
+#include "libps/geometry/cloud_store.h"
+#include "libps/geometry/view_match.h"
+
+namespace ps {
+namespace {
+
+constexpr double kCompactShare = 0.2;  ///< of the points gone
+
+void check(const SceneCloudOptions& o) {
+  const bool sound = o.tolerance_relative >= 0 && o.tolerance_footprints >= 0 &&
+                     o.spacing_footprints >= 0 && o.spacing >= 0 && o.better_footprint >= 0 &&
+                     o.better_footprint <= 1;
+  if (!sound) {
+    throw Error("scene cloud options", "a tolerance or spacing is out of range",
+                "tolerances and spacings of at least 0, better_footprint in [0, 1]");
+  }
+}
+
+}  // namespace
+
+struct SceneCloud::Impl {
+  SceneCloudOptions options;
+  CloudStore store;
+  std::size_t gone = 0;
+
+  void compact_when_worth_it() {
+    if (gone < kCompactShare * store.size()) return;
+    store.compact();
+    gone = 0;
+  }
+};
+
+SceneCloud::SceneCloud(const SceneCloudOptions& options) : impl_(std::make_unique<Impl>()) {
+  check(options);
+  impl_->options = options;
+}
+SceneCloud::~SceneCloud() = default;
+SceneCloud::SceneCloud(SceneCloud&&) noexcept = default;
+SceneCloud& SceneCloud::operator=(SceneCloud&&) noexcept = default;
+
+AddReport SceneCloud::add(const View& view, std::uint16_t view_number, Origin origin,
+                          const Mask& pixels) {
+  check(view, "view " + std::to_string(view_number));
+  Mask usable = liftable(view.depth, view.intrinsics, impl_->options.lift);
+  if (!pixels.empty()) {
+    if (pixels.size() != usable.size()) {
+      throw Error("view " + std::to_string(view_number), "mask and photo differ in size",
+                  "one size");
+    }
+    usable.setTo(0, pixels == 0);
+  }
+  AddReport report;
+  report.lifted = cv::countNonZero(usable);
+
+  const ViewMatch match(impl_->store, view, usable, origin, impl_->options);
+  report.replaced = match.removed();
+  impl_->gone += report.replaced;
+  Mask unexplained = match.unexplained();
+  const std::size_t candidates = cv::countNonZero(unexplained);
+  report.explained = report.lifted - candidates;
+  match.drop_near_neighbours(&unexplained);
+
+  const Cloud added = lift(view, unexplained, view_number, origin);
+  std::size_t next = 0;
+  for (int y = 0; y < unexplained.rows; ++y) {
+    for (int x = 0; x < unexplained.cols; ++x) {
+      if (!unexplained(y, x)) continue;
+      const Point& point = added[next++];
+      const cv::Vec3f c = view.color(y, x);
+      impl_->store.add(point, {view_weight(point.footprint), c[0], c[1], c[2], 1, 0});
+    }
+  }
+  report.added = added.size();
+  report.duplicates = candidates - report.added;
+  impl_->compact_when_worth_it();
+  return report;
+}
+
+std::size_t SceneCloud::remove_contradicted() {
+  std::size_t removed = 0;
+  for (std::size_t i = 0; i < impl_->store.size(); ++i) {
+    const Evidence& evidence = impl_->store.evidence(i);
+    if (impl_->store.alive(i) && evidence.seen_through >= evidence.seen) {
+      impl_->store.remove(i);
+      ++removed;
+    }
+  }
+  impl_->store.compact();
+  impl_->gone = 0;
+  return removed;
+}
+
+Cloud SceneCloud::cloud() const {
+  const CloudStore& store = impl_->store;
+  Cloud result;
+  result.reserve(size());
+  for (std::size_t i = 0; i < store.size(); ++i) {
+    if (!store.alive(i)) continue;
+    Point point = store.point(i);
+    const Evidence& e = store.evidence(i);
+    const auto byte = [](float c) {
+      return static_cast<std::uint8_t>(std::lround(std::clamp(c, 0.f, 1.f) * 255));
+    };
+    point.r = byte(e.r);
+    point.g = byte(e.g);
+    point.b = byte(e.b);
+    result.push_back(point);
+  }
+  return result;
+}
+
+std::size_t SceneCloud::size() const { return impl_->store.size() - impl_->gone; }
+
+}  // namespace ps

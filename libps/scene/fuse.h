@@ -25,7 +25,7 @@ struct FuseOptions {
 
 struct FuseReport {
   std::size_t views = 0;
-  AddReport pixels;             ///< summed over the views
+  AddReport pixels;              ///< summed over the views
   std::size_t contradicted = 0;  ///< points removed at the end
   std::size_t points = 0;        ///< in the cloud
   double load_seconds = 0;       ///< waiting for views
@@ -34,7 +34,8 @@ struct FuseReport {
 
 /// @brief Fuses posed RGB-D views into one deduplicated cloud (issue "Geometry", DESIGN.md).
 /// @param progress  called after each view with (done, count); return false to stop: ps::Error then
-/// Point.view is the index of the view in the source. Errors of load() and unsound views are thrown.
+/// Point.view is the index of the view in the source. Errors of load() and unsound views are
+/// thrown.
 Cloud fuse(const ViewSource& source, const FuseOptions& options = {}, FuseReport* report = nullptr,
            const std::function<bool(std::size_t, std::size_t)>& progress = {});
 
