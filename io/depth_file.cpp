@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/depth_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <opencv2/imgcodecs.hpp>
@@ -34,7 +35,7 @@ Depth parse_pfm(std::string_view bytes, const std::string& name) {
   if (pfm_word(rest) != "Pf") throw Error(name, "is a colour PFM", "one channel (Pf)");
   const auto width = to_number<int>(pfm_word(rest)), height = to_number<int>(pfm_word(rest));
   const auto scale = to_number<double>(pfm_word(rest));
-  if (!width || !height || !scale || *width <= 0 || *height <= 0 || *scale == 0) {
+  if (!width || !height || !scale || *width <= 0 || *height <= 0 || !(std::abs(*scale) > 0)) {
     throw Error(name, "the PFM header is unsound", "Pf, width, height and scale");
   }
   const std::uint64_t pixels = static_cast<std::uint64_t>(*width) * *height;
@@ -63,8 +64,13 @@ Depth decode_depth(std::string_view bytes, const std::string& name, double scale
     throw Error(name, stored.depth() == CV_8U ? "has 8 bits" : "has an unknown kind of pixel",
                 "16-bit integers or 32-bit floats");
   }
-  Depth depth;
-  stored.convertTo(depth, CV_32F, 1 / scale);
+  Depth depth(stored.size());
+  // Not convertTo(): it multiplies by the rounded 1 / scale.
+  for (int y = 0; y < depth.rows; ++y) {
+    const auto* from = stored.ptr<unsigned short>(y);
+    std::transform(from, from + depth.cols, depth[y],
+                   [scale](unsigned short value) { return static_cast<float>(value / scale); });
+  }
   return depth;
 }
 
@@ -105,9 +111,11 @@ Depth parse_depth(std::string_view bytes, const std::string& name, double scale)
     const bool pfm = bytes.substr(0, 2) == "Pf" || bytes.substr(0, 2) == "PF";
     Depth depth = pfm ? parse_pfm(bytes, name) : decode_depth(bytes, name, scale);
     bool any = false;
-    for (float& d : depth) {
-      if (!(d > 0 && std::isfinite(d))) d = 0;
-      any = any || d > 0;
+    for (int y = 0; y < depth.rows; ++y) {
+      for (float* d = depth[y]; d != depth[y] + depth.cols; ++d) {
+        if (!(*d > 0 && std::isfinite(*d))) *d = 0;
+        any = any || *d > 0;
+      }
     }
     if (!any) throw Error(name, "no pixel has a depth", "at least one that is not 0");
     return depth;
