@@ -55,9 +55,9 @@ std::vector<std::uint32_t> CloudStore::chunks_in_view(const Intrinsics& k,
         (normals.back().array() > 0).select(boxes_[i].min(), boxes_[i].max());
     bool in_view = normals.back().dot(nearest - centre) <= farthest;
     for (const Eigen::Vector3f& normal : normals) {
-      const Eigen::Vector3f farthest =
+      const Eigen::Vector3f innermost =
           (normal.array() > 0).select(boxes_[i].max(), boxes_[i].min());
-      in_view = in_view && normal.dot(farthest - centre) >= 0;
+      in_view = in_view && normal.dot(innermost - centre) >= 0;
     }
     if (in_view) chunks.push_back(static_cast<std::uint32_t>(i));
   }
