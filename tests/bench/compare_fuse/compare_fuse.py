@@ -55,51 +55,50 @@ class Comparison:
         self.search = methods.LeafSearch(args.output / "leaves.json", self.programs, args.hold_out)
         self.radii = [f"{radius:g}" for radius in args.radius]
 
-    def scored(self, method, setting):
-        """Fuses without the held-out frames, and scores; None (and a message) when it cannot."""
+    def scored(self, method, fuse):
+        """Calls fuse(), which measures a row and leaves its cloud, and scores that; None (and a
+        message) when it cannot be done."""
         try:
-            row = methods.measured_fuse(self.programs, method, setting, self.args.hold_out,
-                                        self.cloud)
-            if method != "ours":
-                self.search.note(row)
+            row = fuse()
             row["score"] = self.programs.score(self.cloud, self.args.hold_out, self.radii)
             return row
         except methods.Failed as error:
-            print(f"  left out: {error}", file=sys.stderr)
+            print(f"  left out: {method}: {error}", file=sys.stderr)
             return None
 
+    def fused(self, method, setting):
+        """A scored row at one setting, without the held-out frames."""
+        return self.scored(method, lambda: methods.measured_fuse(
+            self.programs, method, setting, self.args.hold_out, self.cloud))
+
     def matched(self):
-        ours = self.scored("ours", self.args.ours[0])
+        ours = self.fused("ours", self.args.ours[0])
         if ours is None:
-            raise SystemExit("ours failed")
+            raise SystemExit(1)
         rows = [ours]
         for method in self.args.peers:
-            try:
-                leaf = self.search.find(method, ours["points"], self.cloud)
-            except methods.Failed as error:
-                print(f"  left out: {error}", file=sys.stderr)
-                continue
-            row = self.scored(method, leaf)
-            rows += [row] if row else []
-        return rows
+            rows.append(self.scored(method, lambda name=method: self.search.find(
+                name, ours["points"], self.cloud)))
+        return [row for row in rows if row]
 
     def time_all_frames(self, rows):
         """Turn by turn, so that a slow minute of the machine falls on all methods alike."""
-        runs = {row["method"]: [] for row in rows}
+        runs = [[] for _ in rows]
         for _ in range(self.args.repeats):
-            for row in rows:
-                runs[row["method"]].append(methods.measured_fuse(
-                    self.programs, row["method"], row["setting"], 0, self.cloud))
-        for row in rows if self.args.repeats else []:
-            own = runs[row["method"]]
-            row["all_points"] = own[0]["points"]
-            for name in ("seconds", "inner_seconds", "peak_mib"):
+            for row, own in zip(rows, runs):
+                try:
+                    own.append(methods.measured_fuse(self.programs, row["method"], row["setting"],
+                                                     0, self.cloud))
+                except methods.Failed as error:
+                    print(f"  left out: {row['method']}: {error}", file=sys.stderr)
+        for row, own in zip(rows, runs):
+            for name in ("points", "seconds", "inner_seconds", "peak_mib") if own else ():
                 row[f"all_{name}"] = statistics.median(run[name] for run in own)
 
     def sweep(self):
-        rows = [self.scored("ours", setting) for setting in self.args.ours[1:]]
+        rows = [self.fused("ours", setting) for setting in self.args.ours[1:]]
         for leaf in self.args.leaves:
-            rows += [self.scored(method, leaf) for method in self.args.peers]
+            rows += [self.fused(method, leaf) for method in self.args.peers]
         return [row for row in rows if row]
 
 

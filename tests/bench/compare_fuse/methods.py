@@ -10,6 +10,7 @@ import sys
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
+TOLERANCE = 0.02  # of the number of points
 PEERS = ["open3d_tsdf", "open3d_voxel", "pcl_voxel", "pcl_uniform"]
 
 
@@ -122,12 +123,20 @@ class LeafSearch:
         self._entries(row["method"])[str(row["setting"])] = row["points"]
         self.path.write_text(json.dumps(self.known, indent=1))
 
-    def find(self, method, target, scratch, tolerance=0.02, tries=8):
+    def _guess(self, method, target):
+        known = {float(leaf): points for leaf, points in self._entries(method).items()}
+        if not known:
+            return 0.01
+        leaf = min(known, key=lambda leaf: abs(known[leaf] - target))
+        near = abs(known[leaf] - target) <= TOLERANCE * target
+        return leaf if near else next_leaf(known, target)
+
+    def find(self, method, target, cloud, tries=8):
+        """Fuses into `cloud`, until it has `target` points. Returns the measured row."""
         for _ in range(tries):
-            known = {float(leaf): points for leaf, points in self._entries(method).items()}
-            for leaf, points in known.items():
-                if abs(points - target) <= tolerance * target:
-                    return leaf
-            leaf = next_leaf(known, target) if known else 0.01
-            self.note(measured_fuse(self.programs, method, leaf, self.hold_out, scratch))
+            leaf = self._guess(method, target)
+            row = measured_fuse(self.programs, method, leaf, self.hold_out, cloud)
+            self.note(row)
+            if abs(row["points"] - target) <= TOLERANCE * target:
+                return row
         raise Failed(f"{method}: no leaf gives {target} points")
