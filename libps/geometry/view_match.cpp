@@ -121,7 +121,8 @@ bool ViewMatch::support(std::uint32_t index, float u, float v, const Seen& seen)
     return false;  // what was seen is never changed by what is invented
   if (observed && !was_observed) return true;
   if (footprint_per_metre_ * d < options_.better_footprint * point.footprint) return true;
-  if (options_.average) average(index, seen.z, depth_at(u, v, d), view_.color(seen.y, seen.x));
+  const float between = options_.average ? depth_at(u, v, d) : 0;
+  if (between > 0) average(index, seen.z, between, view_.color(seen.y, seen.x));
   return false;
 }
 
@@ -141,21 +142,22 @@ void ViewMatch::average(std::uint32_t index, float z, float depth, const cv::Vec
   evidence.weight += weight;
 }
 
-/// Bilinear between four pixels of one surface; else the nearest pixel's.
+/// Bilinear in 1/z, which is linear over a plane's image, between four pixels of one surface; 0
+/// where there are no such four.
 float ViewMatch::depth_at(float u, float v, float nearest) const {
   const int x = static_cast<int>(std::floor(u)), y = static_cast<int>(std::floor(v));
-  if (x < 0 || y < 0 || x + 1 >= usable_.cols || y + 1 >= usable_.rows) return nearest;
+  if (x < 0 || y < 0 || x + 1 >= usable_.cols || y + 1 >= usable_.rows) return 0;
   const float a = u - static_cast<float>(x), b = v - static_cast<float>(y);
-  float sum = 0;
+  float inverse = 0;
   for (int i = 0; i < 4; ++i) {
     const int dx = i % 2, dy = i / 2;
     const float d = view_.depth(y + dy, x + dx);
     if (!usable_(y + dy, x + dx) || std::fabs(d - nearest) > tolerance_per_metre_ * nearest) {
-      return nearest;
+      return 0;
     }
-    sum += (dx ? a : 1 - a) * (dy ? b : 1 - b) * d;
+    inverse += (dx ? a : 1 - a) * (dy ? b : 1 - b) / d;
   }
-  return sum;
+  return 1 / inverse;
 }
 
 /// Marks the pixels that the point stands for and whose depth it agrees with.
