@@ -7,7 +7,8 @@
 namespace ps::apps {
 
 void Context::say(const std::string& line) const {
-  if (!quiet) std::fprintf(stderr, "%s\n", line.c_str());
+  if (!quiet) waiting_.push_back(line);
+  if (verbose) flush();
 }
 
 void Context::detail(const std::string& line) const {
@@ -15,6 +16,11 @@ void Context::detail(const std::string& line) const {
 }
 
 void Context::warn(const std::string& line) const { say("warning: " + line); }
+
+void Context::flush() const {
+  for (const std::string& line : waiting_) std::fprintf(stderr, "%s\n", line.c_str());
+  waiting_.clear();
+}
 
 std::string one_line(const std::string& text) {
   std::string line;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace ps::apps {
 
@@ -14,9 +15,16 @@ struct Context {
   std::uint64_t seed = 0;
   int threads = 0;  ///< 0 = one for each core
 
-  void say(const std::string& line) const;     ///< unless quiet
+  /// A line for the user, unless quiet. It waits for flush(), so that of a run that fails early
+  /// only the reason is seen.
+  void say(const std::string& line) const;
   void detail(const std::string& line) const;  ///< only when verbose
   void warn(const std::string& line) const;    ///< "warning: ...", unless quiet
+  void flush() const;                          ///< prints what waits
+  bool waits() const { return !waiting_.empty(); }
+
+ private:
+  mutable std::vector<std::string> waiting_;
 };
 
 /// @return the text on one line: runs of line breaks and blanks become one blank

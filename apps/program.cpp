@@ -74,6 +74,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return report_usage(program, error);
   }
+  context.flush();
   if (program.get_subcommands().empty()) std::printf("%s", program.help().c_str());
   return 0;
 }

@@ -54,7 +54,8 @@ std::string progress_line(const std::string& what, std::size_t done, std::size_t
 }
 
 Progress::Progress(const Context& context, std::string what, std::size_t total)
-    : what_(std::move(what)),
+    : context_(context),
+      what_(std::move(what)),
       total_(total),
       visible_(!context.quiet && isatty(STDERR_FILENO) == 1) {
   update(0);
@@ -66,6 +67,10 @@ Progress::~Progress() {
 
 void Progress::update(std::size_t done) {
   throw_if_interrupted();
+  if (done > 0 && context_.waits()) {
+    if (drawn_) std::fputs("\r\033[K", stderr);
+    context_.flush();
+  }
   const Clock::time_point now = Clock::now();
   if (!visible_ || (drawn_ && done < total_ && now - last_ < kBetweenDraws)) return;
   last_ = now;

@@ -23,12 +23,14 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
+  /// Lines that wait in the context are printed once something is done.
   /// Throws Interrupted when the user asked the program to end.
   void update(std::size_t done);
 
  private:
   using Clock = std::chrono::steady_clock;
 
+  const Context& context_;
   std::string what_;
   std::size_t total_;
   bool visible_;

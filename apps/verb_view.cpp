@@ -63,6 +63,7 @@ void view(const ViewArguments& a, const Context& context) {
   const ViewerOptions options = viewer_options(a, cloud, context);
   if (a.screenshot.empty()) {
     const Display display(Display::Need::window);
+    context.flush();
     show(cloud, options);
   } else {
     const Display display(Display::Need::picture);

@@ -36,7 +36,8 @@ constexpr const char* kHelp =
     "r        back to the start\n"
     "?        this help on, off\n"
     "q        quit\n"
-    "mouse    left: turn, middle or shift: move, wheel or right: nearer, farther";
+    "mouse    left turns, middle or shift moves,\n"
+    "         wheel or right goes nearer and farther";
 
 /// Everything in the window, and what keys do to it.
 class Window {
@@ -139,6 +140,7 @@ void Window::add_texts() {
   help_->VisibilityOff();
   status_->GetTextProperty()->SetJustificationToRight();
   status_->SetPosition(0.98, 0.02);
+  status_->SetVisibility(window_->GetOffScreenRendering() == 0);
 }
 
 void Window::color(ColorBy by) {

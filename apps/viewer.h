@@ -26,7 +26,8 @@ struct ViewerOptions {
 /// Throws ps::Error when the cloud is empty or the display has no OpenGL 3.2.
 void show(const Cloud& cloud, const ViewerOptions& options);
 
-/// @brief What the window would show at first, without one. Needs a Display; throws as show() does.
+/// @brief What the window would show at first but for its words, without one. Needs a Display;
+/// throws as show() does.
 Image snapshot(const Cloud& cloud, const ViewerOptions& options);
 
 }  // namespace ps::apps

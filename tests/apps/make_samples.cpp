@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// make_samples DIR: writes small inputs for the program's tests, sound ones and bad ones. The sound
+// ones show a wall 3 m ahead, a floor 1 m below and a square 2 m ahead, from known poses.
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+
+#include "io/cloud_file.h"
+#include "io/depth_file.h"
+#include "io/intrinsics_file.h"
+#include "io/photo.h"
+#include "io/safetensors.h"
+#include "io/trajectory.h"
+#include "libps/geometry/lift.h"
+
+namespace fs = std::filesystem;
+
+namespace ps {
+namespace {
+
+constexpr int kWidth = 96, kHeight = 64;
+
+/// Depth of the nearest surface along a ray from `from`, by the z of a direction with z = 1 in the
+/// camera.
+double cast(const Eigen::Vector3d& from, const Eigen::Vector3d& ray) {
+  double nearest = std::numeric_limits<double>::infinity();
+  const auto meet = [&](double t, double half_side) {
+    const Eigen::Vector3d hit = from + t * ray;
+    if (t > 0 && std::abs(hit.x()) < half_side && std::abs(hit.y()) < half_side) {
+      nearest = std::min(nearest, t);
+    }
+  };
+  meet((2 - from.z()) / ray.z(), 0.4);
+  meet((3 - from.z()) / ray.z(), 1e9);
+  if (ray.y() > 0) nearest = std::min(nearest, (1 - from.y()) / ray.y());
+  return nearest;
+}
+
+/// The square is orange, the floor green, the wall purple on the left and blue on the right; all
+/// chequered.
+cv::Vec3f color_at(const Eigen::Vector3d& point) {
+  const auto cell = [](double x) { return static_cast<int>(std::floor(x * 5)); };
+  const bool odd = ((cell(point.x()) + cell(point.y()) + cell(point.z())) & 1) != 0;
+  const float shade = odd ? 0.4f : 0.2f;
+  if (point.y() > 0.999) return {shade, 0.8f, 0.1f};
+  if (point.z() < 2.01) return {0.9f, shade, 0.1f};
+  return {point.x() < 0 ? 0.7f : 0.1f, shade, 0.8f};
+}
+
+View view_from(const Pose& world_from_cam) {
+  View view;
+  view.intrinsics = intrinsics_from_fov(kWidth, kHeight, 70);
+  view.world_from_cam = world_from_cam;
+  view.color.create(kHeight, kWidth);
+  view.depth.create(kHeight, kWidth);
+  for (int v = 0; v < kHeight; ++v) {
+    for (int u = 0; u < kWidth; ++u) {
+      const Eigen::Vector3d ray = world_from_cam.linear() * view.intrinsics.lift(u, v, 1);
+      const double depth = cast(world_from_cam.translation(), ray);
+      view.depth(v, u) = static_cast<float>(depth);
+      view.color(v, u) = color_at(world_from_cam.translation() + depth * ray);
+    }
+  }
+  return view;
+}
+
+Pose pose_of(int i) {
+  Pose pose = Pose::Identity();
+  pose.linear() = Eigen::AngleAxisd(0.04 * (i - 3), Eigen::Vector3d::UnitY()).toRotationMatrix();
+  pose.translation() = Eigen::Vector3d(0.05 * (i - 3), 0, 0);
+  return pose;
+}
+
+/// Frames [first, last) of the walk as an RGB-D folder.
+void write_walk(const fs::path& folder, int first, int last) {
+  fs::create_directories(folder / "color");
+  fs::create_directories(folder / "depth");
+  std::vector<StampedPose> poses;
+  for (int i = first; i < last; ++i) {
+    const View view = view_from(pose_of(i));
+    const std::string name = "0000" + std::to_string(i) + ".png";
+    write_image(folder / "color" / name, view.color);
+    write_depth(folder / "depth" / name, view.depth);
+    poses.push_back({static_cast<double>(i), view.world_from_cam, "", {}});
+    write_intrinsics(folder / "intrinsics.json", view.intrinsics);
+  }
+  write_trajectory(folder / "trajectory.txt", poses);
+}
+
+void write_text(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write_photos(const fs::path& dir) {
+  const View view = view_from(Pose::Identity());
+  write_image(dir / "photo.png", view.color);
+  write_image(dir / "photo.jpg", view.color);
+  write_depth(dir / "depth.png", view.depth);
+  write_depth(dir / "half.png", view.depth(cv::Rect(0, 0, kWidth / 2, kHeight / 2)).clone());
+  write_depth(dir / "square.png", view.depth(cv::Rect(0, 0, kHeight, kHeight)).clone());
+  write_depth(dir / "zero.png", Depth::zeros(kHeight, kWidth));
+  write_intrinsics(dir / "lens.json", view.intrinsics);
+  write_intrinsics(dir / "square_lens.json", intrinsics_from_fov(64, 64, 60));
+}
+
+void write_clouds(const fs::path& dir) {
+  Cloud cloud = lift(view_from(Pose::Identity()));
+  for (std::size_t i = 0; i < cloud.size(); i += 2) {
+    cloud[i].origin = static_cast<std::uint8_t>(Origin::outpainted);
+  }
+  write_cloud(dir / "mixed.ply", cloud);
+  for (Point& point : cloud) point.origin = static_cast<std::uint8_t>(Origin::observed);
+  write_cloud(dir / "seen.pcd", cloud);
+  const std::string header = "ply\nformat ascii 1.0\nelement vertex ";
+  const std::string fields = "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+  write_text(dir / "empty.ply", header + "0" + fields);
+  write_text(dir / "promise.ply", header + "1000000000" + fields + "0 0 1\n");
+  write_text(dir / "no_color.ply", header + "2" + fields + "0 0 1\n0.5 0.5 2\n");
+}
+
+void write_bad_files(const fs::path& dir) {
+  write_text(dir / "nothing.jpg", "");
+  write_text(dir / "truncated.jpg", bytes_of(dir / "photo.jpg").substr(0, 400));
+  write_text(dir / "truncated.png", bytes_of(dir / "photo.png").substr(0, 200));
+  write_text(dir / "text.png", "this is no picture\n");
+  write_text(dir / "nan.txt", "0 nan 0 0 0 0 0 1\n");
+  write_text(dir / "zero_quaternion.txt", "0 0 0 0 0 0 0 0\n");
+  write_text(dir / "mirror.log", "0 0 1\n-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  write_text(dir / "broken.safetensors", "\x40");
+}
+
+void write_tensors(const fs::path& dir) {
+  TensorMap tensors;
+  tensors["points"] = FileTensor::of(std::vector<float>{0.5f, 0.5f, 1, 0, 0, 2}, {2, 3});
+  tensors["features"] = FileTensor::of(std::vector<float>{1, -1, 0, 0.5f, 0, 0}, {3, 2});
+  write_safetensors(dir / "two.safetensors", tensors);
+  tensors["features"] = FileTensor::of(std::vector<float>{1, 2}, {1, 2});
+  write_safetensors(dir / "misfit.safetensors", tensors);
+}
+
+}  // namespace
+}  // namespace ps
+
+int main(int argc, char** argv) try {
+  if (argc != 2) return 2;
+  const fs::path dir = argv[1];
+  fs::remove_all(dir);
+  fs::create_directories(dir / "no_depth" / "color");
+  ps::write_walk(dir / "walk", 0, 7);
+  ps::write_walk(dir / "part_a", 0, 4);
+  ps::write_walk(dir / "part_b", 4, 7);
+  ps::write_photos(dir);
+  ps::write_clouds(dir);
+  ps::write_bad_files(dir);
+  ps::write_tensors(dir);
+  return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "make_samples: %s\n", error.what());
+  return 1;
+}

@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# tests/run.sh: installs what is missing, builds, and runs all tests; then again under the address and
+# undefined-behaviour sanitizers, the threads under the thread sanitizer, and the readers under libFuzzer.
+# tests/run.sh --quick: all tests, no sanitizers.
+set -euo pipefail
+source "$(dirname "${BASH_SOURCE[0]}")/../apps/setup.sh"
+
+summary=""
+failed=0
+
+# suite NAME PRESET CTEST-ARGS...: runs tests of a build and keeps ctest's closing line.
+suite() {
+  local name=$1 dir=$root/build/$2 start=$SECONDS status=0
+  shift 2
+  ctest --test-dir "$dir" --output-on-failure --no-tests=error -j "$(nproc)" "$@" |
+    tee "$dir.ctest.log" || status=$?
+  [ "$status" -eq 0 ] || failed=1
+  summary+="$name: $(grep 'tests passed' "$dir.ctest.log" || echo 'no test ran')"
+  summary+=" ($((SECONDS - start)) s)"$'\n'
+}
+
+sanitized() {
+  build asan
+  suite "address, undefined" asan
+  build tsan core_test geometry_test scene_test
+  suite threads tsan -R '^(Parallel|Threads|Splat|SceneCloud|Fuse)' -E '_NOT_BUILT'
+  if "$root/tests/fuzz/run.sh"; then
+    summary+="fuzz: no reader failed"$'\n'
+  else
+    summary+="fuzz: a reader FAILED"$'\n'
+    failed=1
+  fi
+}
+
+case "${1:-}" in
+  "" | --quick) ;;
+  *)
+    echo "usage: tests/run.sh [--quick]" >&2
+    exit 2
+    ;;
+esac
+install_packages
+build release
+suite tests release
+[ "${1:-}" = --quick ] || sanitized
+printf '\n%s' "$summary"
+exit "$failed"
