@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -148,7 +149,29 @@ SplatOptions splat_options(const RenderArguments& a) {
   return options;
 }
 
-void render(const RenderArguments& a, const Context& context) {
+/// What drawing the frames took and showed.
+struct Drawn {
+  double seconds = 0;  ///< splatting alone
+  double covered = 0;  ///< mean share of the pixels that a point falls on
+};
+
+Drawn draw(const Cloud& cloud, const Shot& shot, const SplatOptions& options, FrameSink& sink,
+           const Context& context) {
+  Drawn drawn;
+  Progress progress(context, "render", shot.poses.size());
+  for (std::size_t i = 0; i < shot.poses.size(); ++i) {
+    const Stopwatch watch;
+    const Splat frame = splat(cloud, shot.lens, shot.poses[i], options);
+    drawn.seconds += watch.seconds();
+    drawn.covered += static_cast<double>(cv::countNonZero(frame.hit)) /
+                     static_cast<double>(frame.hit.total() * shot.poses.size());
+    sink.add(frame);
+    progress.update(i + 1);
+  }
+  return drawn;
+}
+
+void run_render(const RenderArguments& a, const Context& context) {
   if (a.sink.depth && extension_of(a.output) == ".mp4") {
     throw CLI::ValidationError("--depth", "a video holds no depth; -o DIR does");
   }
@@ -160,36 +183,19 @@ void render(const RenderArguments& a, const Context& context) {
   const Shot shot = plan(a, cloud, context);
   const cv::Size size(shot.lens.width, shot.lens.height);
   const auto sink = make_frame_sink(a.output, size, a.sink);
-  const SplatOptions options = splat_options(a);
-
-  double splat_seconds = 0, covered = 0;
-  {
-    Progress progress(context, "render", shot.poses.size());
-    for (std::size_t i = 0; i < shot.poses.size(); ++i) {
-      const Stopwatch one;
-      const Splat frame = splat(cloud, shot.lens, shot.poses[i], options);
-      splat_seconds += one.seconds();
-      covered += static_cast<double>(cv::countNonZero(frame.hit)) / size.area();
-      sink->add(frame);
-      progress.update(i + 1);
-    }
-  }
+  const Drawn drawn = draw(cloud, shot, splat_options(a), *sink, context);
   sink->finish(shot.poses, shot.lens);
 
-  const auto frames = static_cast<double>(shot.poses.size());
-  const Json report = {{"output", a.output},
-                       {"points", cloud.size()},
-                       {"frames", shot.poses.size()},
-                       {"lens", to_json(shot.lens)},
-                       {"covered_share", covered / frames},
-                       {"seconds",
-                        {{"total", total.seconds()},
-                         {"load", load_seconds},
-                         {"splat", splat_seconds},
-                         {"splat_per_frame", splat_seconds / frames}}},
-                       {"peak_memory_mib", peak_memory_mib()}};
-  if (covered == 0) context.warn("no point falls into any frame; another --start may see them");
-  print_report(context, report);
+  if (drawn.covered == 0) context.warn("no point falls into any frame; another --start may do");
+  print_report(
+      context,
+      {{"output", a.output},
+       {"points", cloud.size()},
+       {"frames", shot.poses.size()},
+       {"lens", to_json(shot.lens)},
+       {"covered_share", drawn.covered},
+       {"seconds", {{"total", total.seconds()}, {"load", load_seconds}, {"splat", drawn.seconds}}},
+       {"peak_memory_mib", peak_memory_mib()}});
   char line[160];
   std::snprintf(line, sizeof line, ": %zu frames of %dx%d from %zu points in %.1f s",
                 shot.poses.size(), size.width, size.height, cloud.size(), total.seconds());
@@ -212,7 +218,7 @@ void add_render(CLI::App& program, const Context& context) {
       ->type_name("OUT");
   add_path_options(*verb, *a);
   add_picture_options(*verb, *a);
-  verb->callback([a, &context] { render(*a, context); });
+  verb->callback([a, &context] { run_render(*a, context); });
 }
 
 }  // namespace ps::apps

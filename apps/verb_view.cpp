@@ -57,7 +57,7 @@ ViewerOptions viewer_options(const ViewArguments& a, const Cloud& cloud, const C
   return options;
 }
 
-void view(const ViewArguments& a, const Context& context) {
+void run_view(const ViewArguments& a, const Context& context) {
   if (!a.screenshot.empty()) check_output_file(a.screenshot, {".png", ".jpg", ".jpeg"});
   const Cloud cloud = load_cloud(a.cloud);
   const ViewerOptions options = viewer_options(a, cloud, context);
@@ -98,7 +98,7 @@ void add_view(CLI::App& program, const Context& context) {
       ->check(in_range(1, 32));
   verb->add_flag("--no-axes", a->no_axes, "Leave out the world's axes");
   verb->add_flag("--no-cameras", a->no_cameras, "Leave out the cameras");
-  verb->callback([a, &context] { view(*a, context); });
+  verb->callback([a, &context] { run_view(*a, context); });
 }
 
 }  // namespace ps::apps

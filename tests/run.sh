@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# tests/run.sh: installs what is missing, builds, and runs all tests; then again under the address and
-# undefined-behaviour sanitizers, the threads under the thread sanitizer, and the readers under libFuzzer.
+# tests/run.sh: installs what is missing, builds, and runs all tests; then again under the address
+# and undefined-behaviour sanitizers, the rooms with threads under the thread sanitizer, and the
+# readers under libFuzzer.
 # tests/run.sh --quick: all tests, no sanitizers.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../apps/setup.sh"
