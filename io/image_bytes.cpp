@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/image_bytes.h"
 
+#include <algorithm>
+#include <climits>
+#include <iterator>
 #include <opencv2/imgcodecs.hpp>
 
 #include "io/atomic_file.h"
@@ -119,6 +122,17 @@ std::string_view check_webp(std::string_view bytes, const std::string& name) {
   return {};
 }
 
+/// The kinds that are decoded. OpenCV knows more, and by some of them damaged files end the program
+/// (GDCM by an assertion on DICOM).
+bool is_known(std::string_view bytes) {
+  if (bytes.substr(std::min<std::size_t>(bytes.size(), 128), 4) == "DICM") return false;
+  constexpr std::string_view kKinds[] = {"\xFF\xD8\xFF", kPng,   {"II*\0", 4},      {"MM\0*", 4},
+                                         "BM",           "RIFF", "\x76\x2f\x31\x01"};
+  const bool pnm = bytes.size() > 2 && bytes[0] == 'P' && bytes[1] >= '1' && bytes[1] <= '6';
+  return pnm || std::any_of(std::begin(kKinds), std::end(kKinds),
+                            [&](std::string_view kind) { return starts_with(bytes, kind); });
+}
+
 }  // namespace
 
 std::string_view check_image_bytes(std::string_view bytes, const std::string& name) {
@@ -133,12 +147,15 @@ std::string_view check_image_bytes(std::string_view bytes, const std::string& na
 
 cv::Mat decode_image(std::string_view bytes, int flags, const std::string& name) {
   check_image_bytes(bytes, name);
+  if (!is_known(bytes)) {
+    throw Error(name, "is not an image of a known kind", "JPEG, PNG, TIFF, WebP, BMP or PNM");
+  }
   if (bytes.size() > INT_MAX) throw Error(name, "is larger than 2 GiB", "a smaller image");
   const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
   cv::Mat image = cv::imdecode(raw, flags);
   if (image.empty()) {
-    throw Error(name, "cannot be decoded: damaged, truncated, or not an image",
-                "a whole JPEG, PNG, TIFF or WebP");
+    throw Error(name, "cannot be decoded: damaged, truncated, or of an unusual kind",
+                "a whole image");
   }
   return image;
 }

@@ -19,8 +19,8 @@ struct Photo {
   std::optional<double> focal_px;
 };
 
-/// @brief Reads what OpenCV reads (JPEG, PNG, TIFF, WebP, ...); grey and alpha become RGB; 8 and 16
-/// bit. Throws ps::Error when the file is missing, empty, truncated or no image, or has more than
+/// @brief Reads JPEG, PNG, TIFF, WebP, BMP and PNM; grey and alpha become RGB; 8 and 16 bit.
+/// Throws ps::Error when the file is missing, empty, truncated or no such image, or has more than
 /// 2^28 pixels.
 Photo read_photo(const std::filesystem::path& path);
 

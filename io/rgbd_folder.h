@@ -25,7 +25,8 @@ struct RgbdFolder {
 };
 
 /// @brief Lists a folder without loading its images. A trajectory's timestamp names the files: the
-/// file whose stem is that number, else, when counts agree, files in sorted order.
+/// file whose stem is that number, else, when counts agree, files in order of their names (frame2
+/// before frame10).
 /// Throws ps::Error when a part is missing or no frame has all three. Frames that lack a file or a
 /// pose are left out and counted in `skipped` when it is given.
 RgbdFolder open_rgbd_folder(const std::filesystem::path& path, std::size_t* skipped = nullptr);

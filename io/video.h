@@ -9,8 +9,7 @@
 namespace ps {
 
 /// @brief Writes an MP4 that plays in a browser: H.264, 4:2:0, even size (an odd last row or column
-/// is repeated), index in front where the encoder can. The file appears when close() succeeds, or
-/// not at all.
+/// is repeated), index in front. The file appears when close() succeeds, or not at all.
 class VideoWriter {
  public:
   /// Throws ps::Error when no H.264 encoder is there, the path cannot be written or does not end in

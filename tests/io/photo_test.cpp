@@ -124,6 +124,24 @@ TEST(Photo, exif_orientation_is_applied_once) {
   }
 }
 
+TEST(Photo, tiff_orientation_is_applied_once) {  // by OpenCV itself
+  for (const int orientation : {1, 3, 6, 8}) {
+    const std::string pixels =
+        "\xFF\xFF\xFF" + std::string(15, '\0');  // 3x2, bright at the top left
+    std::string tiff = std::string("MM\0*", 4) + big<std::uint32_t>(8 + pixels.size()) + pixels;
+    const std::pair<int, int> tags[] = {{256, 3}, {257, 2}, {258, 8},           {259, 1},
+                                        {262, 2}, {273, 8}, {274, orientation}, {277, 3},
+                                        {278, 2}, {279, 18}};
+    tiff += big<std::uint16_t>(std::size(tags));
+    for (const auto& [id, value] : tags) tiff += tag(id, 3, value);
+    const Image image = parse_photo(tiff + big<std::uint32_t>(0), "a.tiff").color;
+    ASSERT_EQ(image.size(), orientation > 4 ? cv::Size(2, 3) : cv::Size(3, 2)) << orientation;
+    const bool right = orientation == 3 || orientation == 6,
+               bottom = orientation == 3 || orientation == 8;
+    EXPECT_EQ(image(bottom ? image.rows - 1 : 0, right ? image.cols - 1 : 0)[0], 1) << orientation;
+  }
+}
+
 TEST(Photo, unsound_orientations_are_upright) {
   for (const int orientation : {0, 9, 65535}) {
     const std::string jpeg = with_exif(encoded(".jpg", corner()), exif_block(orientation, {}, {}));
@@ -202,6 +220,9 @@ TEST(Photo, other_files_are_errors) {
   put(folder / "a.jpg", "this is text");
   EXPECT_TRUE(has(error_of([&] { read_photo(folder / "a.jpg"); }), "not an image"));
   EXPECT_TRUE(has(error_of([&] { read_photo(folder.path()); }), "folder"));
+  std::string dicom(200, '\0');  // OpenCV hands these to GDCM, which aborts
+  dicom.replace(128, 4, "DICM");
+  EXPECT_TRUE(has(error_of([&] { parse_photo(dicom, "a"); }), "known kind"));
   EXPECT_TRUE(
       has(error_of([&] { parse_photo(encoded(".tiff", cv::Mat3f(4, 4)), "a"); }), "8 or 16 bits"));
 }
