@@ -82,7 +82,7 @@ class Painter {
   void paint_tile(int index, const ColorOf& color_of) {
     thread_local FrontToBack entries;
     Tile tile = {};
-    std::fill(std::begin(tile.left), std::end(tile.left), 1.0f);
+    for (auto& block : tile.blocks) std::fill(std::begin(block.left), std::end(block.left), 1.0f);
     tile.live = ~std::uint64_t{0};
     const int x0 = index % bins_.columns * kTile, y0 = index / bins_.columns * kTile;
     const splat_kernel::Params params = {static_cast<float>(x0), static_cast<float>(y0),
@@ -134,21 +134,22 @@ class Painter {
     const int height = std::min(kTile, result_.color.rows - y0);
     for (int row = 0; row < height; ++row) {
       for (int column = 0; column < width; ++column) {
-        const int i = splat_kernel::pixel_index(column, row);
-        const float taken = 1 - tile.left[i];
-        const bool hit = tile.count[i] > 0;
-        cv::Vec3f color(tile.r[i], tile.g[i], tile.b[i]);
+        const int index = splat_kernel::pixel_index(column, row), i = index % 16;
+        const splat_kernel::Gathered& block = tile.blocks[index / 16];
+        const float taken = 1 - block.left[i];
+        const bool hit = block.count[i] > 0;
+        cv::Vec3f color(block.r[i], block.g[i], block.b[i]);
         if (options_.renormalise && hit) {
           color *= taken > 0 ? 1 / taken : 0;
         } else {
-          color += tile.left[i] * options_.background;
+          color += block.left[i] * options_.background;
         }
         const int x = x0 + column, y = y0 + row;
         result_.color(y, x) = color;
         result_.hit(y, x) = hit;
-        result_.first_depth(y, x) = tile.first[i];
-        result_.expected_depth(y, x) = taken > 0 ? tile.z[i] / taken : tile.first[i];
-        if (options_.count_hits) result_.count(y, x) = tile.count[i];
+        result_.first_depth(y, x) = block.first[i];
+        result_.expected_depth(y, x) = taken > 0 ? block.z[i] / taken : block.first[i];
+        if (options_.count_hits) result_.count(y, x) = block.count[i];
       }
     }
   }

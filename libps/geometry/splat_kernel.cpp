@@ -96,36 +96,36 @@ inline uint64_t touched(TilePoint p, Params params) {
 }
 
 /// SPEC.md 4: alpha = 1 - sqrt(clamp(d^2 / r^2, 1e-3, 1)); a hit is strictly inside the radius.
-inline void blend_block(Tile* tile, int at, TilePoint p, Floats d2, float inverse_r2,
+inline void blend_block(Gathered* block, int at, TilePoint p, Floats d2, float inverse_r2,
                         Params params) {
-  Floats& left = floats(tile->left + at);
-  Ints& count = ints(tile->count + at);
+  Floats& left = floats(block->left + at);
+  Ints& count = ints(block->count + at);
   const Lanes inside = less(d2, all(params.radius * params.radius));
   const Lanes hit =
       inside & ~less(left, all(params.enough)) & less(count, Ints{} + params.most_hits);
-  if (!any(hit)) return;
+  // Wide blocks are mostly hit, and a branch that is hard to foretell costs more than the sums.
+  if (kLanes < 16 && !any(hit)) return;
   const Floats share = d2 * inverse_r2;
   const Floats alpha = 1.0f - square_root(select(less(share, all(1e-3f)), all(1e-3f), share));
   const Floats weight = select(hit, alpha * left, Floats{});
   const Lanes first = hit & is_zero(count);
-  if (any(first)) {
-    floats(tile->first + at) = select(first, all(p.z), floats(tile->first + at));
-  }
+  floats(block->first + at) = select(first, all(p.z), floats(block->first + at));
   count = increment(count, hit);
   left -= weight;
-  floats(tile->r + at) += weight * p.r;
-  floats(tile->g + at) += weight * p.g;
-  floats(tile->b + at) += weight * p.b;
-  floats(tile->z + at) += weight * p.z;
+  floats(block->r + at) += weight * p.r;
+  floats(block->g + at) += weight * p.g;
+  floats(block->b + at) += weight * p.b;
+  floats(block->z + at) += weight * p.z;
 }
 
 /// Those of the live blocks in which a pixel can still change.
 inline uint64_t still_live(Tile* tile, uint64_t live, const Params& params) {
   for (uint64_t blocks = live; blocks; blocks &= blocks - 1) {
-    const int block = __builtin_ctzll(blocks), at = block_start(block);
-    const Lanes can = ~less(floats(tile->left + at), all(params.enough)) &
-                      less(ints(tile->count + at), Ints{} + params.most_hits);
-    if (!any(can)) live &= ~(1ull << block);
+    const int bit = __builtin_ctzll(blocks), start = block_start(bit), at = start % 16;
+    Gathered* block = tile->blocks + start / 16;
+    const Lanes can = ~less(floats(block->left + at), all(params.enough)) &
+                      less(ints(block->count + at), Ints{} + params.most_hits);
+    if (!any(can)) live &= ~(1ull << bit);
   }
   return live;
 }
@@ -155,7 +155,8 @@ bool PS_JOIN(blend_, PS_ISA)(Tile* tile, const TilePoint* points, int count, con
       const int block = __builtin_ctzll(blocks);
       const Floats dx = lane_x + block_x[block] - p.u;
       const Floats dy = lane_y + block_y[block] - p.v;
-      blend_block(tile, block_start(block), p, dx * dx + dy * dy, inverse_r2, params);
+      const int start = block_start(block);
+      blend_block(tile->blocks + start / 16, start % 16, p, dx * dx + dy * dy, inverse_r2, params);
     }
   }
   tile->live = still_live(tile, live, params);

@@ -23,17 +23,22 @@ struct TilePoint {
   float r, g, b;
 };
 
-/// What a tile has gathered so far, by pixel_index. Starts as zeros, with `left` all 1, `live` all
-/// ones.
-struct alignas(64) Tile {
-  float left[kTilePixels];  ///< transmittance behind the hits so far
-  float r[kTilePixels];
-  float g[kTilePixels];
-  float b[kTilePixels];
-  float z[kTilePixels];      ///< sum of weight times depth
-  float first[kTilePixels];  ///< depth of the first hit; 0 = none
-  int32_t count[kTilePixels];
-  uint64_t live;  ///< a bit for each block: can it still change?
+/// What four by four pixels have gathered so far, in the order of pixel_index. A block's numbers
+/// are together, so that no two of them fall on the same place of a 4 KiB page.
+struct alignas(64) Gathered {
+  float left[16];  ///< transmittance behind the hits so far
+  float r[16];
+  float g[16];
+  float b[16];
+  float z[16];      ///< sum of weight times depth
+  float first[16];  ///< depth of the first hit; 0 = none
+  int32_t count[16];
+};
+
+/// A tile starts as zeros, with `left` all 1 and `live` all ones.
+struct Tile {
+  Gathered blocks[kTilePixels / 16];
+  uint64_t live;  ///< a bit for each vector of pixels: can it still change?
 };
 
 struct Params {
