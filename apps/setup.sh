@@ -33,10 +33,9 @@ build() {
       return 1
     }
   fi
-  if ! ninja -C "$dir" -n "$@" | grep -q 'no work to do'; then
-    echo "pixelsynth: building $preset; the first time takes minutes" >&2
-    [ -t 2 ] && quiet=()
-  fi
+  if ninja -C "$dir" -n "$@" | grep -q 'no work to do'; then return; fi
+  echo "pixelsynth: building $preset; the first time takes minutes" >&2
+  [ -t 2 ] && quiet=()
   ninja -C "$dir" "${quiet[@]}" "$@" >&2
 }
 
