@@ -22,7 +22,7 @@ void splat_room(benchmark::State& state) {
   report(state, given, static_cast<double>(cv::countNonZero(result.hit)));
   state.counters["threads"] = threads();
 }
-BENCHMARK(splat_room)->Name("splat")->Apply(peer_cases)->Apply(scaling_cases);
+BENCHMARK(splat_room)->Name("splat")->Apply(scaling_cases);
 
 }  // namespace
 }  // namespace ps::bench

@@ -32,13 +32,14 @@ def draw(rows, path):
         line = sorted((points, ms) for _, points, s, radius, ms in ours if s == size and radius == 4)
         left.plot(*zip(*line), "o-", label=f"splat, {size} x {size}")
     for marker, (name, title) in zip("^sv", PEERS.items()):
-        for row in rows:
-            if row[0] == name:
-                left.plot(row[1], row[4], marker, color="0.4", ms=8)
-                left.annotate(f"{title}, {row[2]} x {row[2]}", (row[1], row[4]), fontsize=7,
-                              xytext=(6, -2), textcoords="offset points")
+        peer = [row for row in rows if row[0] == name]
+        left.plot([row[1] for row in peer], [row[4] for row in peer], marker, color="0.4", ms=8,
+                  label=title)
+        for row in peer:
+            left.annotate(f"{row[2]} x {row[2]}", (row[1], row[4]), fontsize=7, xytext=(7, -2),
+                          textcoords="offset points")
     left.set(xscale="log", yscale="log", xlabel="points", ylabel="milliseconds", title="radius 4")
-    for points, size in sorted({row[1:3] for row in ours if row[3] != 4}):
+    for points, size in sorted({row[1:3] for row in ours if row[3] != 4}):  # the radii's cases
         line = sorted((row[3], row[4]) for row in ours if row[1:3] == (points, size))
         right.plot(*zip(*line), "o-", label=f"{points:,} points, {size} x {size}")
     right.set(xlabel="radius, pixels", ylabel="milliseconds", yscale="log")

@@ -20,7 +20,7 @@ struct SplatCase {
 /// a case with another number of points is asked for
 const SplatCase& splat_case(const benchmark::State& state);
 
-/// Arguments at which the peers run too.
+/// Arguments at which the peers run; two of the scaling cases.
 void peer_cases(benchmark::internal::Benchmark* benchmark);
 
 /// 10 thousand to 10 million points, 256 to 2048 pixels, radius 1 to 8.
