@@ -29,7 +29,8 @@ def draw(rows, path):
     ours = [row for row in rows if row[0] == "splat"]
     figure, (left, right) = plt.subplots(1, 2, figsize=(12, 5))
     for size in sorted({row[2] for row in ours}):
-        line = sorted((points, ms) for _, points, s, radius, ms in ours if s == size and radius == 4)
+        line = sorted((points, ms) for _, points, s, radius, ms in ours
+                      if s == size and radius == 4)
         left.plot(*zip(*line), "o-", label=f"splat, {size} x {size}")
     for marker, (name, title) in zip("^sv", PEERS.items()):
         peer = [row for row in rows if row[0] == name]

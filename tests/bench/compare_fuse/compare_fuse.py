@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Compares `pixelsynth fuse` with Open3D and PCL at the same number of points, in one run.
 
-Every 10th frame (index % 10 == 5) is left out of every method; clouds are scored against the left-out
-frames with one program, score_cloud. Our first setting fixes the number of points; each peer's voxel
-size is searched for until it gives the same number within 2 %. Times are of whole processes, from
-start to the cloud on disk.
+Every 10th frame (index % 10 == 5) is left out of every method; clouds are scored against the
+left-out frames with one program, score_cloud. Our first setting fixes the number of points; each
+peer's voxel size is searched for until it gives the same number within 2 %. Times are of whole
+processes, from start to the cloud on disk.
 
 Writes compare_fuse.csv, .json, .md and pictures into --output. See README.md.
 """

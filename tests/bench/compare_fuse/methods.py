@@ -60,7 +60,7 @@ def ply_points(path):
 
 
 def inner_seconds(method, cloud, output):
-    """Seconds of reading and fusing as the program itself counted them, without start and writing."""
+    """Seconds of reading and fusing as the program itself counted them, without writing."""
     if method == "ours":
         report = json.loads(cloud.with_suffix(".report.json").read_text())
         return report["seconds"]["total"]

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Fuses an RGB-D folder with Open3D 0.16 (Debian's python3-open3d), as a peer for `pixelsynth fuse`.
+"""Fuses an RGB-D folder with Open3D 0.16 (Debian's python3-open3d): a peer of `pixelsynth fuse`.
 
 tsdf   ScalableTSDFVolume with --leaf metres a voxel, sdf_trunc of four voxels, extract_point_cloud
 voxel  every frame lifted and accumulated, then voxel_down_sample at --leaf metres
