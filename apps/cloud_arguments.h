@@ -21,7 +21,7 @@ struct CloudArguments {
   std::string size;
   std::string intrinsics;
   double fov = 0;  ///< degrees across; 0 = not given
-  std::string up = "-y";
+  std::string up = "y";
 
   void add_to(CLI::App& verb);
 };

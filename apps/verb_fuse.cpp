@@ -13,6 +13,7 @@
 #include "io/intrinsics_file.h"
 #include "io/trajectory.h"
 #include "libps/core/error.h"
+#include "libps/scene/camera_path.h"
 #include "libps/scene/fuse.h"
 
 namespace ps::apps {
@@ -110,11 +111,17 @@ std::vector<StampedPose> poses_of(const std::vector<ChosenFrame>& frames) {
   return poses;
 }
 
+std::vector<Pose> world_from_cams(const FrameList& frames) {
+  std::vector<Pose> poses;
+  for (const ChosenFrame& chosen : frames.used) poses.push_back(chosen.frame.world_from_cam);
+  return poses;
+}
+
 /// The cloud, and beside it how it was made and where from.
 void write_all(const FuseArguments& a, const Cloud& cloud, const FrameList& frames,
                const Json& settings, const Json& report) {
   const std::filesystem::path output(a.output);
-  write_cloud(output, cloud);
+  write_cloud(output, cloud, up_axis(world_from_cams(frames)));
   write_json(beside(output, "settings.json"), settings);
   write_json(beside(output, "report.json"), report);
   write_trajectory(beside(output, "trajectory.txt"), poses_of(frames.used));

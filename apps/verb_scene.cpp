@@ -41,6 +41,14 @@ struct SceneView {
   Splat splat;
 };
 
+/// The photo's camera in the scene's world: y up and z towards the viewer, so that other programs
+/// show the cloud the right way up.
+const Pose kPhotoPose = [] {
+  Pose pose = Pose::Identity();
+  pose.linear().diagonal() << 1, -1, -1;
+  return pose;
+}();
+
 std::string text_of(cv::Size size) {
   return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
@@ -76,6 +84,7 @@ Intrinsics choose_lens(const SceneArguments& a, const Photo& photo, const Contex
 View read_view(const SceneArguments& a, const Context& context) {
   const Photo photo = read_photo(a.photo);
   View view;
+  view.world_from_cam = kPhotoPose;
   view.color = photo.color;
   view.depth = read_depth_for(a, photo.color.size(), context);
   view.intrinsics = choose_lens(a, photo, context);
@@ -86,11 +95,11 @@ View read_view(const SceneArguments& a, const Context& context) {
 /// The input's own pose and the extremes of the eight directions (SPEC.md 2).
 std::vector<SceneView> render_views(const Cloud& cloud, const Intrinsics& lens,
                                     const Context& context) {
-  std::vector<SceneView> views = {{"input", Pose::Identity(), {}}};
+  std::vector<SceneView> views = {{"input", kPhotoPose, {}}};
   PathOptions to_the_extreme;
   to_the_extreme.frames = 2;
   for (const std::string& name : direction_names()) {
-    views.push_back({name, camera_path(name, Pose::Identity(), to_the_extreme).back(), {}});
+    views.push_back({name, camera_path(name, kPhotoPose, to_the_extreme).back(), {}});
   }
   SplatOptions options;
   options.renormalise = true;
@@ -130,7 +139,7 @@ Json report_of(const Cloud& cloud, const View& view, const std::vector<SceneView
 
 void write_all(OutputFolder& folder, const Cloud& cloud, const View& view,
                const std::vector<SceneView>& views) {
-  write_cloud(folder.file("scene.ply"), cloud);
+  write_cloud(folder.file("scene.ply"), cloud, "y");
   std::vector<StampedPose> poses;
   for (const SceneView& seen : views) {
     throw_if_interrupted();
@@ -219,7 +228,9 @@ void add_scene(CLI::App& program, const Context& context) {
       "A photo and its depth to a scene: scene.ply, views/*.png to eight sides, preview.png, "
       "trajectory.txt, intrinsics.json, report.json and settings.json in one folder.\n"
       "The folder appears when all is done; in a folder that exists already, files of these names "
-      "are replaced and others stay. The world is the photo's camera: x right, y down, z forward.");
+      "are replaced and others stay. The world has the photo's camera at its origin; x is right, y "
+      "up, "
+      "z towards the viewer, as MeshLab, CloudCompare and f3d show it.");
   auto a = std::make_shared<SceneArguments>();
   add_options(*verb, *a);
   verb->callback([a, verb, &context] { run_scene(*a, *verb, context); });

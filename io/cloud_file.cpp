@@ -23,8 +23,8 @@ Cloud read_cloud(const std::filesystem::path& path) {
   return is_pcd(path) ? read_pcd(path) : read_ply(path);
 }
 
-void write_cloud(const std::filesystem::path& path, const Cloud& cloud) {
-  is_pcd(path) ? write_pcd(path, cloud) : write_ply(path, cloud);
+void write_cloud(const std::filesystem::path& path, const Cloud& cloud, const std::string& up) {
+  is_pcd(path) ? write_pcd(path, cloud) : write_ply(path, cloud, up);
 }
 
 }  // namespace ps

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "libps/geometry/point.h"
 
@@ -11,6 +12,7 @@ namespace ps {
 Cloud read_cloud(const std::filesystem::path& path);
 
 /// @brief Writes PLY or PCD, by extension. The file appears whole or not at all.
-void write_cloud(const std::filesystem::path& path, const Cloud& cloud);
+/// @param up  the world's axis that points up, which PLY notes; empty = not known
+void write_cloud(const std::filesystem::path& path, const Cloud& cloud, const std::string& up = "");
 
 }  // namespace ps

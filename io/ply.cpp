@@ -234,10 +234,12 @@ void pack(const Point& point, char* to) {
   std::memcpy(to + 21, &point.origin, 1);
 }
 
-std::string header_text(std::size_t points) {
+std::string header_text(std::size_t points, const std::string& up) {
+  const std::string axes = up.empty() ? "those of the poses" : "of the world, " + up + " is up";
   return "ply\nformat binary_little_endian 1.0\n"
-         "comment pixelsynth " PIXELSYNTH_VERSION
-         "\ncomment units metres\ncomment axes x right, y down, z forward\n"
+         "comment pixelsynth " PIXELSYNTH_VERSION "\ncomment units metres\ncomment axes " +
+         axes +
+         "; cameras x right, y down, z forward\n"
          "comment scalar_footprint metres that one pixel covered\n"
          "comment scalar_view number of the view that added the point\n"
          "comment scalar_origin 0 observed, 1 outpainted\n"
@@ -264,11 +266,11 @@ Cloud read_ply(const std::filesystem::path& path) {
   return guarded(path.string(), [&] { return parse_ply(FileBytes(path).view(), path.string()); });
 }
 
-void write_ply(const std::filesystem::path& path, const Cloud& cloud) {
+void write_ply(const std::filesystem::path& path, const Cloud& cloud, const std::string& up) {
   guarded(path.string(), [&] {
     check_finite(cloud, path.string());
     AtomicFile file(path);
-    file.write(header_text(cloud.size()));
+    file.write(header_text(cloud.size(), up));
     constexpr std::size_t kBlock = 1 << 18;
     std::string block;
     for (std::size_t begin = 0; begin < cloud.size(); begin += kBlock) {

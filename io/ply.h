@@ -22,7 +22,8 @@ Cloud parse_ply(std::string_view bytes, const std::string& name);
 
 /// @brief Writes binary little-endian PLY: x y z, red green blue, scalar_footprint, scalar_view,
 /// scalar_origin; comments give tool, version, units and axes (DESIGN.md, "Files").
+/// @param up  the world's axis that points up, for the comment: "y", "-z", ...; empty = not known
 /// The file appears whole or not at all. Throws ps::Error when a coordinate is not finite.
-void write_ply(const std::filesystem::path& path, const Cloud& cloud);
+void write_ply(const std::filesystem::path& path, const Cloud& cloud, const std::string& up = "");
 
 }  // namespace ps

@@ -82,8 +82,8 @@ Eigen::Matrix3d level_camera(const std::string& up) {
   const int number = axis.front() - 'x';
   Eigen::Matrix3d world_from_cam;
   world_from_cam.col(1) = (minus ? 1 : -1) * Eigen::Vector3d::Unit(number);
-  world_from_cam.col(2) = Eigen::Vector3d::Unit(number == 2 ? 1 : 2);
-  world_from_cam.col(0) = world_from_cam.col(1).cross(world_from_cam.col(2));
+  world_from_cam.col(0) = Eigen::Vector3d::Unit(number == 0 ? 1 : 0);
+  world_from_cam.col(2) = world_from_cam.col(0).cross(world_from_cam.col(1));
   return world_from_cam;
 }
 
@@ -156,6 +156,15 @@ Framing frame_cloud(const pcl::PointCloud<Point>& cloud, const Intrinsics& intri
       framing.world_from_cam.linear() *
       ((low + high) / 2 - Eigen::Vector3d(0, 0, framing.distance));
   return framing;
+}
+
+std::string up_axis(const std::vector<Pose>& world_from_cam) {
+  Eigen::Vector3d up = Eigen::Vector3d::Zero();
+  for (const Pose& pose : world_from_cam) up -= pose.linear().col(1);
+  if (world_from_cam.empty()) return "y";
+  int axis = 0;
+  up.cwiseAbs().maxCoeff(&axis);
+  return (up[axis] < 0 ? "-" : "") + std::string(1, static_cast<char>('x' + axis));
 }
 
 Intrinsics with_size(const Intrinsics& intrinsics, int width, int height) {

@@ -51,11 +51,15 @@ struct Framing {
 
 /// @brief A camera that stands outside the cloud, level, and sees all of it but its outermost 1 %
 /// along each axis.
-/// @param up  the world's axis that points up: x, y, z, or -x, -y, -z. With -y, as in a photo's own
-/// world, the camera looks along z with x to the right.
-/// Throws ps::Error when the cloud is empty, the intrinsics are unsound or `up` is none of these.
+/// @param up  the world's axis that points up: x, y, z, or -x, -y, -z. With y the camera looks
+/// along -z with x to the right. Throws ps::Error when the cloud is empty, the intrinsics are
+/// unsound or `up` is none of these.
 Framing frame_cloud(const pcl::PointCloud<Point>& cloud, const Intrinsics& intrinsics,
-                    const std::string& up = "-y");
+                    const std::string& up = "y");
+
+/// @return the world's axis (x, y, z, -x, -y or -z) nearest to where the cameras' tops point, on
+/// average; "y" for no poses
+std::string up_axis(const std::vector<Pose>& world_from_cam);
 
 /// @brief The same lens behind a picture of another size: keeps the horizontal field of view and
 /// square pixels, and crops or extends the height evenly, so nothing is squashed.

@@ -75,7 +75,7 @@ app_test(render_left_looks_left [=[
 app_test(render_leaves_no_dark_holes_between_points [=[
   needs ffmpeg
   works scene $S/photo.png --depth $S/depth.png --intrinsics $S/lens.json --no-outpaint -o s
-  works render s/scene.ply -o r.png --trajectory $S/walk/trajectory.txt --size 384x256
+  works render s/scene.ply -o r.png --trajectory s/trajectory.txt --size 384x256
   [ "$(pixel r.png 192 40 | cut -d' ' -f3)" -gt 190 ]]=])
 app_test(render_writes_h264_that_browsers_play [=[
   needs ffprobe

@@ -204,9 +204,19 @@ TEST(FrameCloud, the_axis_that_is_up_is_up_in_the_picture) {
   EXPECT_THROW(frame_cloud(cloud, camera, ""), Error);
 }
 
-TEST(FrameCloud, by_default_the_camera_has_the_axes_of_the_world) {
+TEST(FrameCloud, by_default_y_is_up_and_x_to_the_right) {
   const Framing framing = frame_cloud(box_cloud(1, 1, 1), intrinsics_from_fov(64, 48, 60));
-  EXPECT_EQ(framing.world_from_cam.linear(), Eigen::Matrix3d::Identity());
+  const Eigen::Matrix3d expected = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  EXPECT_EQ(framing.world_from_cam.linear(), expected);
+}
+
+TEST(UpAxis, is_where_the_tops_of_the_cameras_point) {
+  const Intrinsics camera = intrinsics_from_fov(640, 480, 60);
+  for (const std::string up : {"x", "y", "z", "-x", "-y", "-z"}) {
+    const Pose level = frame_cloud(box_cloud(1, 2, 3), camera, up).world_from_cam;
+    EXPECT_EQ(up_axis(camera_path("circle", level)), up);
+  }
+  EXPECT_EQ(up_axis({}), "y");
 }
 
 TEST(FrameCloud, one_point_is_enough_and_none_is_an_error) {
