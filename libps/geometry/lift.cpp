@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "libps/geometry/lift.h"
 
-#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <vector>
 
 #include "libps/core/error.h"
@@ -15,21 +15,17 @@ constexpr std::size_t kRowsAtATime = 16;
 
 bool known(float depth) { return depth > 0 && std::isfinite(depth); }
 
-/// Is (x, y) between a surface in front and one behind, along any of four directions?
-bool flying(const Depth& depth, int x, int y, float jump) {
-  static constexpr std::array<std::array<int, 2>, 4> kDirections = {
-      {{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
-  const float d = depth(y, x);
-  for (const auto& [dx, dy] : kDirections) {
-    const int x1 = x - dx, y1 = y - dy, x2 = x + dx, y2 = y + dy;
-    if (x1 < 0 || x2 >= depth.cols || y1 < 0 || y2 < 0 || y1 >= depth.rows || y2 >= depth.rows) {
-      continue;
-    }
-    const float a = depth(y1, x1), b = depth(y2, x2);
-    if (!known(a) || !known(b)) continue;
-    if ((d - a > jump && b - d > jump) || (d - b > jump && a - d > jump)) return true;
+/// Clears the pixels of a row that hang between a surface in front and one behind, with the
+/// neighbours at (x - dx) in the row `before` and (x + dx) in the row `after`. Unknown depths are
+/// 0.
+void clear_flying(const float* row, const float* before, const float* after, int dx, int width,
+                  float jump_per_metre, std::uint8_t* keep) {
+  for (int x = std::abs(dx); x < width - std::abs(dx); ++x) {
+    const float d = row[x], a = before[x - dx], b = after[x + dx], jump = jump_per_metre * d;
+    const bool rises = (d - a > jump) & (b - d > jump) & (a > 0);
+    const bool falls = (d - b > jump) & (a - d > jump) & (b > 0);
+    keep[x] &= static_cast<std::uint8_t>(!(rises | falls));
   }
-  return false;
 }
 
 Point make_point(const Eigen::Vector3d& position, const cv::Vec3f& rgb, double footprint,
@@ -51,16 +47,33 @@ Point make_point(const Eigen::Vector3d& position, const cv::Vec3f& rgb, double f
 }  // namespace
 
 Mask liftable(const Depth& depth, const Intrinsics& intrinsics, const LiftOptions& options) {
-  Mask result(depth.size(), 0);
-  const auto jump_per_metre =
-      static_cast<float>(options.edge_footprints * intrinsics.footprint_per_metre());
+  Mask result(depth.size());
+  Depth clean(depth.size());  // unknown depths are 0, so that they are no surface in front
+  const auto least = static_cast<float>(options.min_depth);
+  const auto most = static_cast<float>(options.max_depth);
   parallel_chunks(depth.rows, kRowsAtATime, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       for (int x = 0; x < depth.cols; ++x) {
         const float d = depth(y, x);
-        if (!known(d) || d < options.min_depth || d > options.max_depth) continue;
-        result(y, x) = jump_per_metre <= 0 || !flying(depth, x, y, jump_per_metre * d);
+        clean(y, x) = known(d) ? d : 0;
+        result(y, x) = static_cast<std::uint8_t>((clean(y, x) > 0) & (d >= least) & (d <= most));
       }
+    }
+  });
+  const auto jump_per_metre =
+      static_cast<float>(options.edge_footprints * intrinsics.footprint_per_metre());
+  if (jump_per_metre <= 0) return result;
+  parallel_chunks(depth.rows, kRowsAtATime, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      const auto clear = [&](int dy, int dx) {
+        if (y < dy || y + dy >= depth.rows) return;
+        clear_flying(clean[y], clean[y - dy], clean[y + dy], dx, depth.cols, jump_per_metre,
+                     result[y]);
+      };
+      clear(0, 1);
+      clear(1, 0);
+      clear(1, 1);
+      clear(1, -1);
     }
   });
   return result;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "libps/core/error.h"
 #include "libps/core/parallel.h"
@@ -21,6 +22,20 @@ void check(const SceneCloudOptions& o) {
   if (!sound) {
     throw Error("scene cloud options", "a tolerance or spacing is out of range",
                 "tolerances and spacings of at least 0, better_footprint in [0, 1]");
+  }
+}
+
+/// Points are kept in single precision: refuses views whose pixels it could not tell apart.
+void check_precision(const View& view, const std::string& where) {
+  double farthest = 0;
+  for (const float d : view.depth) {
+    if (std::isfinite(d)) farthest = std::max<double>(farthest, d);
+  }
+  const double place = view.world_from_cam.translation().cwiseAbs().maxCoeff() + farthest;
+  const double finest = std::numeric_limits<float>::epsilon() * place;
+  if (view.intrinsics.footprint_per_metre() * farthest < 2 * finest) {
+    throw Error(where, "its pixels are nearer to each other than single precision can tell apart",
+                "poses near the origin, in metres, and focal lengths in pixels");
   }
 }
 
@@ -49,6 +64,7 @@ SceneCloud& SceneCloud::operator=(SceneCloud&&) noexcept = default;
 AddReport SceneCloud::add(const View& view, std::uint16_t view_number, Origin origin,
                           const Mask& pixels) {
   check(view, "view " + std::to_string(view_number));
+  check_precision(view, "view " + std::to_string(view_number));
   Mask usable = liftable(view.depth, view.intrinsics, impl_->options.lift);
   if (!pixels.empty()) {
     if (pixels.size() != usable.size()) {

@@ -14,11 +14,19 @@
 namespace ps {
 namespace {
 
-constexpr int kMargin = 2;             ///< pixels around the image in which points are looked at
 constexpr int kMostPixelsAcross = 16;  ///< that one point is drawn over
 constexpr float kMostReach = 24;       ///< pixels that a spacing is looked for over
 
-int nearest_pixel(float u) { return static_cast<int>(std::floor(u + 0.5f)); }
+// std::floor and std::ceil are calls on machines without SSE 4.1, and these are the hottest lines.
+int floor_of(float x) {
+  const int i = static_cast<int>(x);
+  return i - static_cast<int>(x < static_cast<float>(i));
+}
+int ceil_of(float x) {
+  const int i = static_cast<int>(x);
+  return i + static_cast<int>(x > static_cast<float>(i));
+}
+int nearest_pixel(float u) { return floor_of(u + 0.5f); }
 
 }  // namespace
 
@@ -30,88 +38,103 @@ ViewMatch::ViewMatch(CloudStore& store, const View& view, const Mask& usable, Or
       origin_(origin),
       options_(options),
       footprint_per_metre_(static_cast<float>(view.intrinsics.footprint_per_metre())),
+      spacing_footprints_(static_cast<float>(options.spacing_footprints)),
+      spacing_(static_cast<float>(options.spacing)),
       tolerance_per_metre_(
           static_cast<float>(options.tolerance_relative +
                              options.tolerance_footprints * view.intrinsics.footprint_per_metre())),
       cam_from_world_(view.world_from_cam.inverse().cast<float>()),
-      explained_(view.depth.size(), 0) {
-  find_depths_around();
+      stride_(view.depth.cols + 2 * kMargin),
+      pixels_(static_cast<std::size_t>(stride_) * (view.depth.rows + 2 * kMargin)) {
+  fill_pixels();
   const auto chunks = store_.chunks_in_view(view.intrinsics, view.world_from_cam, kMargin,
                                             farthest_ * (1 + tolerance_per_metre_));
   seen_.resize(chunks.size());
   parallel_for(chunks.size(), [&](std::size_t c) { match_chunk(chunks[c], &seen_[c]); });
 }
 
-void ViewMatch::find_depths_around() {
-  const int m = kMargin;
-  Depth low, high;
-  view_.depth.copyTo(high, usable_);
-  high.setTo(0, usable_ == 0);
-  low = high.clone();
-  low.setTo(std::numeric_limits<float>::max(), usable_ == 0);
+void ViewMatch::fill_pixels() {
+  constexpr float kHuge = std::numeric_limits<float>::max();
+  const cv::Size size(stride_, view_.depth.rows + 2 * kMargin);
+  Depth high(size, 0.f), low(size, kHuge);
+  const cv::Rect image(kMargin, kMargin, view_.depth.cols, view_.depth.rows);
+  view_.depth.copyTo(high(image), usable_);
+  view_.depth.copyTo(low(image), usable_);
   double least = 0, most = 0;
-  cv::minMaxLoc(low, &least, nullptr, nullptr, nullptr);
-  cv::minMaxLoc(high, nullptr, &most, nullptr, nullptr);
+  cv::minMaxLoc(low, &least);
+  cv::minMaxLoc(high, nullptr, &most);
   farthest_ = static_cast<float>(most);
-  const auto nearest = static_cast<float>(least);
   if (most > 0) {
+    const auto nearest = static_cast<float>(least);
     const float widest = spacing(nearest) / (footprint_per_metre_ * nearest);
-    reach_ = static_cast<int>(std::ceil(std::min(widest, kMostReach)));
+    // A little less, so that rounding does not make two pixels of one.
+    reach_ = std::max(1, static_cast<int>(std::ceil(std::min(widest, kMostReach) - 1e-3f)));
   }
-  cv::copyMakeBorder(low, low, m, m, m, m, cv::BORDER_CONSTANT, least > 0 ? 3e38 : 0);
-  cv::copyMakeBorder(high, high, m, m, m, m, cv::BORDER_CONSTANT, 0);
   const cv::Mat1b window(2 * reach_ + 1, 2 * reach_ + 1, 1);
-  cv::erode(low, nearest_around_, window);
-  cv::dilate(high, farthest_around_, window);
+  Depth nearest_around, farthest_around;
+  parallel_for(2, [&](std::size_t i) {
+    i == 0 ? cv::erode(low, nearest_around, window) : cv::dilate(high, farthest_around, window);
+  });
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    pixels_[i] = {nearest_around(static_cast<int>(i)), farthest_around(static_cast<int>(i)),
+                  high(static_cast<int>(i)), 0};
+  }
 }
 
 void ViewMatch::match_chunk(std::uint32_t chunk, std::vector<Seen>* seen) {
   const Intrinsics& k = view_.intrinsics;
   const auto fx = static_cast<float>(k.fx), fy = static_cast<float>(k.fy);
   const auto cx = static_cast<float>(k.cx), cy = static_cast<float>(k.cy);
+  // One pixel inside the margin, so that rounding stays inside too.
+  const auto right = static_cast<float>(k.width - 2 + kMargin);
+  const auto bottom = static_cast<float>(k.height - 2 + kMargin);
   const Eigen::Matrix3f rotation = cam_from_world_.linear();
   const Eigen::Vector3f translation = cam_from_world_.translation();
-  std::size_t removed = 0;
-  const std::size_t begin = chunk * CloudStore::kChunk;
-  const std::size_t end = std::min(begin + CloudStore::kChunk, store_.size());
-  for (std::size_t i = begin; i < end; ++i) {
+  const auto begin = static_cast<std::uint32_t>(chunk * CloudStore::kChunk);
+  const auto end =
+      static_cast<std::uint32_t>(std::min<std::size_t>(begin + CloudStore::kChunk, store_.size()));
+  for (std::uint32_t i = begin; i < end; ++i) {
+    __builtin_prefetch(&store_.point(i) + 32);
     const Eigen::Vector3f p = rotation * store_.point(i).getVector3fMap() + translation;
-    if (!store_.alive(i) || !(p.z() > 1e-3f)) continue;
-    const float u = fx * p.x() / p.z() + cx, v = fy * p.y() / p.z() + cy;
-    // One pixel inside the margin, so that rounding stays inside too.
-    if (!(u > -kMargin && v > -kMargin && u < static_cast<float>(k.width - 1 + kMargin) &&
-          v < static_cast<float>(k.height - 1 + kMargin))) {
-      continue;
-    }
-    const int x = nearest_pixel(u), y = nearest_pixel(v);
-    const float far = farthest_around_(y + kMargin, x + kMargin);
-    if (p.z() > far * (1 + tolerance_per_metre_) + spacing(far)) continue;
-    const float near = nearest_around_(y + kMargin, x + kMargin);
-    if (p.z() < near * (1 - tolerance_per_metre_)) {
-      Evidence& evidence = store_.evidence(i);
-      const bool inside = x >= 0 && y >= 0 && x < k.width && y < k.height && usable_(y, x);
-      if (inside && evidence.seen_through < UINT16_MAX) ++evidence.seen_through;
-      if (p.z() < near - spacing(near)) continue;
-    }
-    const auto index = static_cast<std::uint32_t>(i);
-    const Seen here = {index, p.z(), static_cast<std::int16_t>(x), static_cast<std::int16_t>(y)};
-    if (support(index, u, v, here)) {
-      store_.remove(i);
-      ++removed;
-    } else {
-      seen->push_back(here);
-      draw(index, u, v, p.z());
-    }
+    const float per_metre = 1 / p.z();
+    const float u = fx * p.x() * per_metre + cx, v = fy * p.y() * per_metre + cy;
+    const bool inside = p.z() > 1e-3f && u > 1 - kMargin && v > 1 - kMargin && u < right &&
+                        v < bottom && store_.alive(i);
+    if (inside) match_point(i, u, v, p.z(), seen);
   }
-  removed_ += removed;
 }
 
-/// Lets the view speak for or against the point; returns whether its own pixels shall replace it.
-bool ViewMatch::support(std::uint32_t index, float u, float v, const Seen& seen) {
-  const bool inside = seen.x >= 0 && seen.y >= 0 && seen.x < usable_.cols && seen.y < usable_.rows;
-  if (!inside || !usable_(seen.y, seen.x)) return false;
-  const float d = view_.depth(seen.y, seen.x);
-  if (std::fabs(seen.z - d) > tolerance_per_metre_ * d) return false;
+void ViewMatch::match_point(std::uint32_t index, float u, float v, float z,
+                            std::vector<Seen>* seen) {
+  const int x = nearest_pixel(u), y = nearest_pixel(v);
+  const Pixel& here = pixel(x, y);
+  if (z > here.farthest * (1 + tolerance_per_metre_) + spacing(here.farthest)) return;
+  if (z < here.nearest * (1 - tolerance_per_metre_)) {
+    Evidence& evidence = store_.evidence(index);
+    if (here.depth > 0 && evidence.seen_through < UINT16_MAX) ++evidence.seen_through;
+    if (z < here.nearest - spacing(here.nearest)) return;
+  }
+  if (support(index, u, v, x, y, &z)) {
+    store_.remove(index);
+    ++removed_;
+    return;
+  }
+  const float own_footprint = store_.point(index).footprint, footprint = footprint_per_metre_ * z;
+  const float covers = std::max(own_footprint * spacing_footprints_, spacing_);
+  draw(u, v, z, std::clamp(covers / footprint, 0.5f, 0.5f * kMostPixelsAcross));
+  // A point that covers as much as the spacing has explained all that it may be too near to.
+  const bool explains_all = covers > 1.01f * spacing(z) &&
+                            covers < 0.5f * kMostPixelsAcross * footprint &&
+                            spacing(z) < tolerance_per_metre_ * z;
+  if (explains_all) return;
+  if (seen->capacity() == 0) seen->reserve(CloudStore::kChunk);
+  seen->push_back({index, u, v, z});
+}
+
+/// Lets the view speak for the point; returns whether its own pixels shall replace it.
+bool ViewMatch::support(std::uint32_t index, float u, float v, int x, int y, float* z) {
+  const float d = pixel(x, y).depth;
+  if (d <= 0 || std::fabs(*z - d) > tolerance_per_metre_ * d) return false;
   Evidence& evidence = store_.evidence(index);
   if (evidence.seen < UINT16_MAX) ++evidence.seen;
   const Point& point = store_.point(index);
@@ -122,12 +145,12 @@ bool ViewMatch::support(std::uint32_t index, float u, float v, const Seen& seen)
   if (observed && !was_observed) return true;
   if (footprint_per_metre_ * d < options_.better_footprint * point.footprint) return true;
   const float between = options_.average ? depth_at(u, v, d) : 0;
-  if (between > 0) average(index, seen.z, between, view_.color(seen.y, seen.x));
+  if (between > 0) *z = average(index, *z, between, view_.color(y, x));
   return false;
 }
 
-/// Moves the point along the view's ray to the weighted mean of what views say.
-void ViewMatch::average(std::uint32_t index, float z, float depth, const cv::Vec3f& color) {
+/// Moves the point along the view's ray to the weighted mean of what views say; returns its new z.
+float ViewMatch::average(std::uint32_t index, float z, float depth, const cv::Vec3f& color) {
   Point& point = store_.point(index);
   Evidence& evidence = store_.evidence(index);
   const float weight = view_weight(footprint_per_metre_ * depth);
@@ -140,92 +163,120 @@ void ViewMatch::average(std::uint32_t index, float z, float depth, const cv::Vec
   evidence.g += share * (color[1] - evidence.g);
   evidence.b += share * (color[2] - evidence.b);
   evidence.weight += weight;
+  return scale * z;
 }
 
 /// Bilinear in 1/z, which is linear over a plane's image, between four pixels of one surface; 0
 /// where there are no such four.
 float ViewMatch::depth_at(float u, float v, float nearest) const {
-  const int x = static_cast<int>(std::floor(u)), y = static_cast<int>(std::floor(v));
-  if (x < 0 || y < 0 || x + 1 >= usable_.cols || y + 1 >= usable_.rows) return 0;
+  const int x = floor_of(u), y = floor_of(v);
   const float a = u - static_cast<float>(x), b = v - static_cast<float>(y);
+  const float tolerance = tolerance_per_metre_ * nearest;
   float inverse = 0;
   for (int i = 0; i < 4; ++i) {
     const int dx = i % 2, dy = i / 2;
-    const float d = view_.depth(y + dy, x + dx);
-    if (!usable_(y + dy, x + dx) || std::fabs(d - nearest) > tolerance_per_metre_ * nearest) {
-      return 0;
-    }
+    const float d = pixel(x + dx, y + dy).depth;  // 0 beside the image and where not usable
+    if (std::fabs(d - nearest) > tolerance || d <= 0) return 0;
     inverse += (dx ? a : 1 - a) * (dy ? b : 1 - b) / d;
   }
   return 1 / inverse;
 }
 
-/// Marks the pixels that the point stands for and whose depth it agrees with.
-void ViewMatch::draw(std::uint32_t index, float u, float v, float z) {
-  const float covers =
-      std::max(store_.point(index).footprint * static_cast<float>(options_.spacing_footprints),
-               static_cast<float>(options_.spacing));
-  const float half =
-      std::clamp(covers / (footprint_per_metre_ * z), 0.5f, 0.5f * kMostPixelsAcross);
-  const int x0 = std::max(0, static_cast<int>(std::ceil(u - half)));
-  const int y0 = std::max(0, static_cast<int>(std::ceil(v - half)));
-  const int x1 = std::min(usable_.cols - 1, static_cast<int>(std::floor(u + half)));
-  const int y1 = std::min(usable_.rows - 1, static_cast<int>(std::floor(v + half)));
+/// Marks the pixels nearer than `half` along either axis whose depth agrees.
+void ViewMatch::draw(float u, float v, float z, float half) {
+  const int x0 = std::max(0, ceil_of(u - half));
+  const int y0 = std::max(0, ceil_of(v - half));
+  const int x1 = std::min(usable_.cols - 1, floor_of(u + half));
+  const int y1 = std::min(usable_.rows - 1, floor_of(v + half));
   for (int y = y0; y <= y1; ++y) {
     for (int x = x0; x <= x1; ++x) {
-      const float d = view_.depth(y, x);
-      if (std::fabs(z - d) <= tolerance_per_metre_ * d) {
+      Pixel& there = pixel(x, y);
+      if (std::fabs(z - there.depth) <= tolerance_per_metre_ * there.depth) {
         // Several threads may say the same of one pixel.
-        __atomic_store_n(&explained_(y, x), std::uint8_t{255}, __ATOMIC_RELAXED);
+        __atomic_store_n(&there.explained, 1u, __ATOMIC_RELAXED);
       }
     }
   }
 }
 
-float ViewMatch::spacing(float depth) const {
-  return std::max(static_cast<float>(options_.spacing_footprints) * footprint_per_metre_ * depth,
-                  static_cast<float>(options_.spacing));
+Mask ViewMatch::unexplained() const {
+  Mask result(usable_.size());
+  for (int y = 0; y < result.rows; ++y) {
+    for (int x = 0; x < result.cols; ++x) {
+      const Pixel& here = pixel(x, y);
+      result(y, x) = here.depth > 0 && here.explained == 0;
+    }
+  }
+  return result;
 }
 
 void ViewMatch::drop_near_neighbours(Mask* candidates) const {
-  const std::vector<std::uint32_t> around = points_around(*candidates);
-  if (!around.empty()) drop_near_points(around, candidates);
+  Mask beside(candidates->size(), std::uint8_t{0});
+  const std::vector<std::uint32_t> points = points_beside(*candidates, &beside);
+  if (!points.empty()) drop_near_points(points, beside, candidates);
   if (options_.spacing > 0 || options_.spacing_footprints > 1) thin(candidates);
 }
 
-std::vector<std::uint32_t> ViewMatch::points_around(const Mask& candidates) const {
+/// The points that may be within the spacing of a candidate, and which candidates those are: the
+/// rest need not go through the KD-tree.
+std::vector<std::uint32_t> ViewMatch::points_beside(const Mask& candidates, Mask* beside) const {
   Mask near;
   cv::copyMakeBorder(candidates, near, kMargin, kMargin, kMargin, kMargin, cv::BORDER_CONSTANT);
   cv::dilate(near, near, cv::Mat1b(2 * reach_ + 3, 2 * reach_ + 3, 1));
-  std::vector<std::uint32_t> around;
-  for (const auto& chunk : seen_) {
-    for (const Seen& seen : chunk) {
-      if (near(seen.y + kMargin, seen.x + kMargin)) around.push_back(seen.index);
+  std::vector<std::vector<std::uint32_t>> found(seen_.size());
+  parallel_for(seen_.size(), [&](std::size_t c) {
+    for (const Seen& seen : seen_[c]) {
+      const int x = nearest_pixel(seen.u) + kMargin, y = nearest_pixel(seen.v) + kMargin;
+      if (near(y, x) && this->beside(seen, candidates, beside)) found[c].push_back(seen.index);
     }
-  }
-  return around;
+  });
+  std::vector<std::uint32_t> points;
+  for (const auto& some : found) points.insert(points.end(), some.begin(), some.end());
+  return points;
 }
 
-void ViewMatch::drop_near_points(const std::vector<std::uint32_t>& around, Mask* candidates) const {
-  pcl::PointCloud<pcl::PointXYZ>::Ptr points(new pcl::PointCloud<pcl::PointXYZ>);
-  points->reserve(around.size());
-  for (const std::uint32_t index : around) {
+/// Marks the candidates that the point may be too near to; returns whether there are any.
+bool ViewMatch::beside(const Seen& seen, const Mask& candidates, Mask* beside) const {
+  const float reach =
+      static_cast<float>(reach_) + 0.5f;  // more than the spacing spans, for rounding
+  const int x0 = std::max(0, ceil_of(seen.u - reach));
+  const int y0 = std::max(0, ceil_of(seen.v - reach));
+  const int x1 = std::min(candidates.cols - 1, floor_of(seen.u + reach));
+  const int y1 = std::min(candidates.rows - 1, floor_of(seen.v + reach));
+  bool any = false;
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) {
+      const float d = pixel(x, y).depth;
+      if (!candidates(y, x) || std::fabs(seen.z - d) > 1.01f * spacing(d)) continue;
+      __atomic_store_n(&(*beside)(y, x), std::uint8_t{1}, __ATOMIC_RELAXED);
+      any = true;
+    }
+  }
+  return any;
+}
+
+void ViewMatch::drop_near_points(const std::vector<std::uint32_t>& points, const Mask& beside,
+                                 Mask* candidates) const {
+  pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
+  cloud->reserve(points.size());
+  for (const std::uint32_t index : points) {
     const Point& p = store_.point(index);
-    points->push_back({p.x, p.y, p.z});
+    cloud->push_back({p.x, p.y, p.z});
   }
   pcl::KdTreeFLANN<pcl::PointXYZ> tree(false);
-  tree.setInputCloud(points);
-  parallel_for(candidates->rows, [&](std::size_t row) {
-    const int y = static_cast<int>(row);
+  tree.setInputCloud(cloud);
+  parallel_chunks(candidates->rows, 8, [&](std::size_t begin, std::size_t end) {
     pcl::Indices index(1);
     std::vector<float> distance2(1);
-    for (int x = 0; x < candidates->cols; ++x) {
-      if (!(*candidates)(y, x)) continue;
-      const float d = view_.depth(y, x), apart = spacing(d);
-      const Eigen::Vector3f p =
-          (view_.world_from_cam * view_.intrinsics.lift(x, y, d)).cast<float>();
-      tree.nearestKSearch({p.x(), p.y(), p.z()}, 1, index, distance2);
-      if (distance2[0] < apart * apart) (*candidates)(y, x) = 0;
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < candidates->cols; ++x) {
+        if (!beside(y, x)) continue;
+        const float d = view_.depth(y, x), apart = spacing(d);
+        const Eigen::Vector3f p =
+            (view_.world_from_cam * view_.intrinsics.lift(x, y, d)).cast<float>();
+        tree.nearestKSearch({p.x(), p.y(), p.z()}, 1, index, distance2);
+        if (distance2[0] < apart * apart) (*candidates)(y, x) = 0;
+      }
     }
   });
 }

@@ -2,6 +2,7 @@
 // Internal to the geometry room: holds one view against the cloud.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <vector>
@@ -28,30 +29,45 @@ class ViewMatch {
   std::size_t removed() const { return removed_; }
 
   /// @return usable pixels that no point left in the cloud explains
-  Mask unexplained() const { return usable_ & ~explained_; }
+  Mask unexplained() const;
 
   /// @brief Clears candidates that have a point of the cloud, or an earlier candidate, nearer than
   /// the spacing (KD-tree of the points around candidates).
   void drop_near_neighbours(Mask* candidates) const;
 
  private:
-  /// A point of the cloud beside a surface of the view.
+  /// What the view says at a pixel; beside the image, depth is 0.
+  struct Pixel {
+    float nearest;            ///< smallest usable depth within reach; huge where there is none
+    float farthest;           ///< greatest usable depth within reach; 0 where there is none
+    float depth;              ///< 0 where not usable
+    std::uint32_t explained;  ///< 1 where a point that stays explains the pixel
+  };
+  /// A point of the cloud that may be too near to a pixel that it does not explain.
   struct Seen {
     std::uint32_t index;
-    float z;
-    std::int16_t x, y;  ///< nearest pixel
+    float u, v, z;
   };
 
-  void find_depths_around();
+  void fill_pixels();
+  Pixel& pixel(int x, int y) { return pixels_[(y + kMargin) * stride_ + x + kMargin]; }
+  const Pixel& pixel(int x, int y) const { return pixels_[(y + kMargin) * stride_ + x + kMargin]; }
   void match_chunk(std::uint32_t chunk, std::vector<Seen>* seen);
-  bool support(std::uint32_t index, float u, float v, const Seen& seen);
-  void average(std::uint32_t index, float z, float depth, const cv::Vec3f& color);
+  void match_point(std::uint32_t index, float u, float v, float z, std::vector<Seen>* seen);
+  bool support(std::uint32_t index, float u, float v, int x, int y, float* z);
+  float average(std::uint32_t index, float z, float depth, const cv::Vec3f& color);
   float depth_at(float u, float v, float nearest) const;
-  void draw(std::uint32_t index, float u, float v, float z);
-  std::vector<std::uint32_t> points_around(const Mask& candidates) const;
-  void drop_near_points(const std::vector<std::uint32_t>& around, Mask* candidates) const;
+  void draw(float u, float v, float z, float half);
+  std::vector<std::uint32_t> points_beside(const Mask& candidates, Mask* beside) const;
+  bool beside(const Seen& seen, const Mask& candidates, Mask* beside) const;
+  void drop_near_points(const std::vector<std::uint32_t>& points, const Mask& beside,
+                        Mask* candidates) const;
   void thin(Mask* candidates) const;
-  float spacing(float depth) const;
+  float spacing(float depth) const {
+    return std::max(spacing_footprints_ * footprint_per_metre_ * depth, spacing_);
+  }
+
+  static constexpr int kMargin = 2;  ///< pixels around the image in which points are looked at
 
   CloudStore& store_;
   const View& view_;
@@ -59,13 +75,14 @@ class ViewMatch {
   const Origin origin_;
   const SceneCloudOptions& options_;
   const float footprint_per_metre_;
+  const float spacing_footprints_;
+  const float spacing_;
   const float tolerance_per_metre_;
   const Eigen::Isometry3f cam_from_world_;
-  int reach_ = 1;                        ///< pixels that the spacing spans, at most
-  Depth nearest_around_;                 ///< smallest usable depth within the reach; with a margin
-  Depth farthest_around_;                ///< greatest; 0 = none
-  float farthest_ = 0;                   ///< greatest usable depth
-  Mask explained_;                       ///< 255 where a point that stays explains the pixel
+  int reach_ = 1;       ///< pixels that the spacing spans, at most
+  float farthest_ = 0;  ///< greatest usable depth
+  int stride_;          ///< pixels in a row, margins included
+  std::vector<Pixel> pixels_;
   std::vector<std::vector<Seen>> seen_;  ///< by chunk in view
   std::atomic<std::size_t> removed_{0};
 };

@@ -196,9 +196,9 @@ TEST(SceneCloud, bytes_do_not_depend_on_threads) {
   set_threads(0);
 }
 
-TEST(SceneCloud, coincident_points_do_no_harm) {
-  // A camera so long that all its points fall within a millimetre of each other.
-  const Intrinsics tele{60, 40, 1e7, 1e7, 29.5, 19.5};
+TEST(SceneCloud, nearly_coincident_points_do_no_harm) {
+  // A camera so long that all its points fall within a tenth of a millimetre.
+  const Intrinsics tele{60, 40, 1e6, 1e6, 29.5, 19.5};
   SceneCloud scene;
   for (int i = 0; i < 3; ++i) {
     View view = plane_at(1, {0.5f, 0.5f, 0.5f}, tele);
@@ -207,6 +207,15 @@ TEST(SceneCloud, coincident_points_do_no_harm) {
   }
   EXPECT_GT(scene.size(), 0u);
   EXPECT_LE(scene.size(), 7200u);
+}
+
+TEST(SceneCloud, pixels_that_floats_cannot_tell_apart_are_refused) {
+  SceneCloud scene;
+  EXPECT_THROW(scene.add(plane_at(1, {0, 0, 0}, {60, 40, 1e8, 1e8, 29.5, 19.5}), 0), Error);
+  View far_away = plane_at(2, {0, 0, 0});
+  far_away.world_from_cam.translation().x() = 5e5;  // as in UTM coordinates
+  EXPECT_THROW(scene.add(far_away, 0), Error);
+  EXPECT_EQ(scene.size(), 0u);
 }
 
 TEST(SceneCloud, unsound_views_are_refused_and_change_nothing) {
