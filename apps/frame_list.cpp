@@ -52,8 +52,8 @@ FrameList choose_frames(const std::vector<RgbdFolder>& folders, const FrameChoic
       const bool early = choice.first && frame.timestamp < *choice.first;
       const bool late = choice.last && frame.timestamp > *choice.last;
       if (early || late || in_range++ % choice.every != 0) continue;
-      ++chosen;
-      const bool held = choice.hold_out > 0 && chosen % choice.hold_out == 0;
+      const int n = choice.hold_out;
+      const bool held = n > 0 && chosen++ % n == n / 2;
       (held ? list.held_out : list.used).push_back({&folder, frame});
     }
   }

@@ -14,7 +14,9 @@ struct FrameChoice {
   std::optional<double> first;
   std::optional<double> last;
   int every = 1;
-  int hold_out = 0;  ///< of the frames so chosen, leave out every so-manieth; 0 = none
+  /// N: of the frames so chosen in a folder, counted from 0, leave out i with i % N == N / 2 (N =
+  /// 10: 5, 15, 25, ...); 0 = none.
+  int hold_out = 0;
 };
 
 /// @brief Parses `A:B`, `A:`, `:B` into first and last. Throws CLI::ValidationError on anything

@@ -46,8 +46,10 @@ void add_input_options(CLI::App& verb, FuseArguments& a) {
   verb.add_option("--every", a.choice.every, "Only every Nth of these frames of each folder")
       ->type_name("N")
       ->check(in_range(1, 1000000));
-  verb.add_option("--hold-out", a.choice.hold_out,
-                  "Leave out every Nth of what is left, to compare with; 0 = none")
+  verb.add_option(
+          "--hold-out", a.choice.hold_out,
+          "Leave out every Nth of what is left, to compare with: of each folder's frames, "
+          "counted from 0, those whose number modulo N is N/2 (10: 5, 15, 25, ...); 0 = none")
       ->type_name("N")
       ->check(in_range(0, 1000000));
   verb.add_option("--depth-scale", a.depth_scale, "Units of the depth files in a metre")
