@@ -67,23 +67,23 @@ class Pool {
       const std::lock_guard<std::mutex> lock(mutex_);
       loop_ = &loop;
       ++generation_;
-      busy_ = static_cast<int>(workers_.size());
     }
     wake_.notify_all();
     loop.run();
     std::unique_lock<std::mutex> lock(mutex_);
+    loop_ = nullptr;  // a worker that wakes only now is not waited for
     done_.wait(lock, [this] { return busy_ == 0; });
-    loop_ = nullptr;
   }
 
  private:
   void work(std::size_t seen) {
     std::unique_lock<std::mutex> lock(mutex_);
     while (true) {
-      wake_.wait(lock, [&] { return stopping_ || generation_ != seen; });
+      wake_.wait(lock, [&] { return stopping_ || (loop_ != nullptr && generation_ != seen); });
       if (stopping_) return;
       seen = generation_;
       Loop* loop = loop_;
+      ++busy_;
       lock.unlock();
       loop->run();
       lock.lock();
@@ -98,7 +98,7 @@ class Pool {
   std::vector<std::thread> workers_;
   Loop* loop_ = nullptr;
   std::size_t generation_ = 0;
-  int busy_ = 0;
+  int busy_ = 0;  ///< workers inside a loop
   bool stopping_ = false;
 };
 

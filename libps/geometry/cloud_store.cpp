@@ -2,6 +2,7 @@
 #include "libps/geometry/cloud_store.h"
 
 #include <array>
+#include <cmath>
 
 namespace ps {
 namespace {
@@ -22,46 +23,46 @@ std::array<Eigen::Vector3f, 5> inward_normals(const Intrinsics& k, const Pose& w
 
 }  // namespace
 
-void CloudStore::add(const Point& point, const Evidence& evidence) {
-  if (points_.size() % kChunk == 0) boxes_.emplace_back();
-  points_.push_back(point);
-  evidence_.push_back(evidence);
-  boxes_.back().extend(point.getVector3fMap());
-}
-
-void CloudStore::moved(std::size_t i) { boxes_[i / kChunk].extend(points_[i].getVector3fMap()); }
-
-void CloudStore::compact() {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (!alive(i)) continue;
-    points_[kept] = points_[i];
-    evidence_[kept++] = evidence_[i];
+void CloudStore::add(const Point& point, Evidence evidence) {
+  constexpr int kFootprintsAsPowerOfTwo = 5;
+  int exponent;
+  std::frexp(point.footprint, &exponent);
+  exponent += kFootprintsAsPowerOfTwo;
+  const float cells_per_metre = std::ldexp(1.0f, -exponent);
+  Key key = {exponent, 0, 0, 0};
+  for (int axis = 0; axis < 3; ++axis) {
+    key[axis + 1] = static_cast<std::int32_t>(std::floor(point.data[axis] * cells_per_metre));
   }
-  points_.resize(kept);
-  evidence_.resize(kept);
-  boxes_.assign((kept + kChunk - 1) / kChunk, Box());
-  for (std::size_t i = 0; i < kept; ++i) moved(i);
+  if (last_cell_ == UINT32_MAX || key != last_key_) {
+    const auto [place, is_new] = places_.emplace(key, static_cast<std::uint32_t>(cells_.size()));
+    if (is_new) cells_.emplace_back();
+    last_key_ = key;
+    last_cell_ = place->second;
+  }
+  CloudCell& cell = cells_[last_cell_];
+  evidence.number = numbers_++;
+  cell.points.push_back(point);
+  cell.evidence.push_back(evidence);
+  cell.box.extend(point.getVector3fMap());
 }
 
-std::vector<std::uint32_t> CloudStore::chunks_in_view(const Intrinsics& k,
-                                                      const Pose& world_from_cam, double margin,
-                                                      double farthest) const {
+std::vector<std::uint32_t> CloudStore::cells_in_view(const Intrinsics& k,
+                                                     const Pose& world_from_cam, double margin,
+                                                     double farthest) const {
   const auto normals = inward_normals(k, world_from_cam, margin);
   const Eigen::Vector3f centre = world_from_cam.translation().cast<float>();
-  std::vector<std::uint32_t> chunks;
-  for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    const Eigen::Vector3f nearest =
-        (normals.back().array() > 0).select(boxes_[i].min(), boxes_[i].max());
+  std::vector<std::uint32_t> found;
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    const Eigen::AlignedBox3f& box = cells_[i].box;
+    const Eigen::Vector3f nearest = (normals.back().array() > 0).select(box.min(), box.max());
     bool in_view = normals.back().dot(nearest - centre) <= farthest;
     for (const Eigen::Vector3f& normal : normals) {
-      const Eigen::Vector3f innermost =
-          (normal.array() > 0).select(boxes_[i].max(), boxes_[i].min());
+      const Eigen::Vector3f innermost = (normal.array() > 0).select(box.max(), box.min());
       in_view = in_view && normal.dot(innermost - centre) >= 0;
     }
-    if (in_view) chunks.push_back(static_cast<std::uint32_t>(i));
+    if (in_view) found.push_back(static_cast<std::uint32_t>(i));
   }
-  return chunks;
+  return found;
 }
 
 }  // namespace ps

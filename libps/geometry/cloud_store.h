@@ -2,7 +2,9 @@
 // Internal to the geometry room: the points of a SceneCloud, with what views said about them.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "libps/geometry/camera.h"
@@ -16,44 +18,43 @@ struct Evidence {
   float r = 0, g = 0, b = 0;       ///< averaged colour in [0,1]
   std::uint16_t seen = 1;          ///< views that saw a surface where it is
   std::uint16_t seen_through = 0;  ///< views that saw a surface well behind it
+  std::uint32_t number = 0;        ///< points that were added before it
 };
 
-/// @brief Points in the order they came, in chunks with bounding boxes. Views add points that are
-/// near each other, so the chunks that a camera can see are found without touching the others.
+/// @brief Points that are near each other in space; a point that is gone has no footprint.
+struct CloudCell {
+  Cloud::VectorType points;
+  std::vector<Evidence> evidence;
+  Eigen::AlignedBox3f box;
+};
+
+/// @brief Points in cells of space, so that a camera looks at those that it can see and no others.
+/// A cell is about 64 footprints wide, whatever the scale of the scene.
 class CloudStore {
  public:
-  static constexpr std::size_t kChunk = 1024;
+  static bool alive(const Point& point) { return point.footprint > 0; }
 
-  std::size_t size() const { return points_.size(); }
-  std::size_t chunks() const { return boxes_.size(); }
-  Point& point(std::size_t i) { return points_[i]; }
-  const Point& point(std::size_t i) const { return points_[i]; }
-  Evidence& evidence(std::size_t i) { return evidence_[i]; }
-  const Evidence& evidence(std::size_t i) const { return evidence_[i]; }
-  bool alive(std::size_t i) const { return points_[i].footprint > 0; }
-  void remove(std::size_t i) { points_[i].footprint = 0; }
+  void add(const Point& point, Evidence evidence);
 
-  void add(const Point& point, const Evidence& evidence);
+  std::vector<CloudCell>& cells() { return cells_; }
+  const std::vector<CloudCell>& cells() const { return cells_; }
 
-  /// @brief Keeps a moved point inside its chunk's box. Safe for points of different chunks at
-  /// once.
-  void moved(std::size_t i);
+  /// @return how many points were ever added; numbers are below
+  std::size_t numbers() const { return numbers_; }
 
-  /// @brief Drops points that are gone; the others keep their order.
-  void compact();
-
-  /// @return chunks that may hold points within `margin` pixels of the camera's image and not
+  /// @return cells that may hold points within `margin` pixels of the camera's image and not
   /// farther than `farthest` metres along its axis
-  std::vector<std::uint32_t> chunks_in_view(const Intrinsics& intrinsics,
-                                            const Pose& world_from_cam, double margin,
-                                            double farthest) const;
+  std::vector<std::uint32_t> cells_in_view(const Intrinsics& intrinsics, const Pose& world_from_cam,
+                                           double margin, double farthest) const;
 
  private:
-  using Box = Eigen::AlignedBox3f;
+  using Key = std::array<std::int32_t, 4>;  ///< exponent of the width, and the three places
 
-  Cloud::VectorType points_;
-  std::vector<Evidence> evidence_;
-  std::vector<Box> boxes_;
+  std::vector<CloudCell> cells_;
+  std::map<Key, std::uint32_t> places_;
+  Key last_key_ = {};
+  std::uint32_t last_cell_ = UINT32_MAX;
+  std::uint32_t numbers_ = 0;
 };
 
 }  // namespace ps

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "libps/geometry/lift.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <vector>
 
 #include "libps/core/error.h"
@@ -13,18 +15,34 @@ namespace {
 
 constexpr std::size_t kRowsAtATime = 16;
 
-bool known(float depth) { return depth > 0 && std::isfinite(depth); }
+/// Positive and finite; written without branches, for whole rows at once.
+bool known(float depth) {
+  return static_cast<int>(depth > 0) & static_cast<int>(depth <= std::numeric_limits<float>::max());
+}
+
+/// Copies a row of depths, unknown ones as 0, and marks those in range.
+void clean_row(const float* __restrict depth, int width, float least, float most,
+               float* __restrict clean, std::uint8_t* __restrict keep) {
+  for (int x = 0; x < width; ++x) {
+    const float d = known(depth[x]) ? depth[x] : 0;
+    clean[x] = d;
+    keep[x] = static_cast<std::uint8_t>(static_cast<int>(d > 0) & static_cast<int>(d >= least) &
+                                        static_cast<int>(d <= most));
+  }
+}
 
 /// Clears the pixels of a row that hang between a surface in front and one behind, with the
 /// neighbours at (x - dx) in the row `before` and (x + dx) in the row `after`. Unknown depths are
 /// 0.
-void clear_flying(const float* row, const float* before, const float* after, int dx, int width,
-                  float jump_per_metre, std::uint8_t* keep) {
+void clear_flying(const float* __restrict row, const float* __restrict before,
+                  const float* __restrict after, int dx, int width, float jump_per_metre,
+                  std::uint8_t* __restrict keep) {
   for (int x = std::abs(dx); x < width - std::abs(dx); ++x) {
     const float d = row[x], a = before[x - dx], b = after[x + dx], jump = jump_per_metre * d;
-    const bool rises = (d - a > jump) & (b - d > jump) & (a > 0);
-    const bool falls = (d - b > jump) & (a - d > jump) & (b > 0);
-    keep[x] &= static_cast<std::uint8_t>(!(rises | falls));
+    const float low = std::min(a, b), high = std::max(a, b);
+    keep[x] &=
+        static_cast<std::uint8_t>(static_cast<int>(d - low <= jump) |
+                                  static_cast<int>(high - d <= jump) | static_cast<int>(low <= 0));
   }
 }
 
@@ -53,11 +71,7 @@ Mask liftable(const Depth& depth, const Intrinsics& intrinsics, const LiftOption
   const auto most = static_cast<float>(options.max_depth);
   parallel_chunks(depth.rows, kRowsAtATime, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < depth.cols; ++x) {
-        const float d = depth(y, x);
-        clean(y, x) = known(d) ? d : 0;
-        result(y, x) = static_cast<std::uint8_t>((clean(y, x) > 0) & (d >= least) & (d <= most));
-      }
+      clean_row(depth[y], depth.cols, least, most, clean[y], result[y]);
     }
   });
   const auto jump_per_metre =

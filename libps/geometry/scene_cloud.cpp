@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "libps/core/error.h"
 #include "libps/core/parallel.h"
@@ -12,8 +13,6 @@
 
 namespace ps {
 namespace {
-
-constexpr double kCompactShare = 0.2;  ///< of the points gone
 
 void check(const SceneCloudOptions& o) {
   const bool sound = o.tolerance_relative >= 0 && o.tolerance_footprints >= 0 &&
@@ -25,11 +24,15 @@ void check(const SceneCloudOptions& o) {
   }
 }
 
+std::uint8_t to_byte(float color) {
+  return static_cast<std::uint8_t>(std::lround(std::clamp(color, 0.f, 1.f) * 255));
+}
+
 /// Points are kept in single precision: refuses views whose pixels it could not tell apart.
 void check_precision(const View& view, const std::string& where) {
-  double farthest = 0;
+  float farthest = 0;
   for (const float d : view.depth) {
-    if (std::isfinite(d)) farthest = std::max<double>(farthest, d);
+    farthest = d <= std::numeric_limits<float>::max() ? std::max(farthest, d) : farthest;
   }
   const double place = view.world_from_cam.translation().cwiseAbs().maxCoeff() + farthest;
   const double finest = std::numeric_limits<float>::epsilon() * place;
@@ -45,12 +48,6 @@ struct SceneCloud::Impl {
   SceneCloudOptions options;
   CloudStore store;
   std::size_t gone = 0;
-
-  void compact_when_worth_it() {
-    if (gone < kCompactShare * store.size()) return;
-    store.compact();
-    gone = 0;
-  }
 };
 
 SceneCloud::SceneCloud(const SceneCloudOptions& options) : impl_(std::make_unique<Impl>()) {
@@ -91,48 +88,55 @@ AddReport SceneCloud::add(const View& view, std::uint16_t view_number, Origin or
       if (!unexplained(y, x)) continue;
       const Point& point = added[next++];
       const cv::Vec3f c = view.color(y, x);
-      impl_->store.add(point, {view_weight(point.footprint), c[0], c[1], c[2], 1, 0});
+      impl_->store.add(point, {view_weight(point.footprint), c[0], c[1], c[2]});
     }
   }
   report.added = added.size();
   report.duplicates = candidates - report.added;
-  impl_->compact_when_worth_it();
   return report;
 }
 
 std::size_t SceneCloud::remove_contradicted() {
   std::size_t removed = 0;
-  for (std::size_t i = 0; i < impl_->store.size(); ++i) {
-    const Evidence& evidence = impl_->store.evidence(i);
-    if (impl_->store.alive(i) && evidence.seen_through >= evidence.seen) {
-      impl_->store.remove(i);
+  for (CloudCell& cell : impl_->store.cells()) {
+    for (std::size_t i = 0; i < cell.points.size(); ++i) {
+      const Evidence& evidence = cell.evidence[i];
+      if (!CloudStore::alive(cell.points[i]) || evidence.seen_through < evidence.seen) continue;
+      cell.points[i].footprint = 0;
       ++removed;
     }
   }
-  impl_->store.compact();
-  impl_->gone = 0;
+  impl_->gone += removed;
   return removed;
 }
 
 Cloud SceneCloud::cloud() const {
   const CloudStore& store = impl_->store;
-  Cloud result;
-  result.reserve(size());
-  for (std::size_t i = 0; i < store.size(); ++i) {
-    if (!store.alive(i)) continue;
-    Point point = store.point(i);
-    const Evidence& e = store.evidence(i);
-    const auto byte = [](float c) {
-      return static_cast<std::uint8_t>(std::lround(std::clamp(c, 0.f, 1.f) * 255));
-    };
-    point.r = byte(e.r);
-    point.g = byte(e.g);
-    point.b = byte(e.b);
-    result.push_back(point);
+  // Each number's place in the result: points in the order in which they were added.
+  std::vector<std::uint32_t> place(store.numbers() + 1, 0);
+  for (const CloudCell& cell : store.cells()) {
+    for (std::size_t i = 0; i < cell.points.size(); ++i) {
+      place[cell.evidence[i].number + 1] = CloudStore::alive(cell.points[i]);
+    }
   }
+  std::partial_sum(place.begin(), place.end(), place.begin());
+  Cloud result;
+  result.resize(place.back());
+  parallel_for(store.cells().size(), [&](std::size_t c) {
+    const CloudCell& cell = store.cells()[c];
+    for (std::size_t i = 0; i < cell.points.size(); ++i) {
+      if (!CloudStore::alive(cell.points[i])) continue;
+      const Evidence& e = cell.evidence[i];
+      Point& point = result[place[e.number]];
+      point = cell.points[i];
+      point.r = to_byte(e.r);
+      point.g = to_byte(e.g);
+      point.b = to_byte(e.b);
+    }
+  });
   return result;
 }
 
-std::size_t SceneCloud::size() const { return impl_->store.size() - impl_->gone; }
+std::size_t SceneCloud::size() const { return impl_->store.numbers() - impl_->gone; }
 
 }  // namespace ps

@@ -14,6 +14,7 @@
 namespace ps {
 namespace {
 
+constexpr int kBlock = 16;             ///< pixels across that a cell is first held against
 constexpr int kMostPixelsAcross = 16;  ///< that one point is drawn over
 constexpr float kMostReach = 24;       ///< pixels that a spacing is looked for over
 
@@ -47,10 +48,14 @@ ViewMatch::ViewMatch(CloudStore& store, const View& view, const Mask& usable, Or
       stride_(view.depth.cols + 2 * kMargin),
       pixels_(static_cast<std::size_t>(stride_) * (view.depth.rows + 2 * kMargin)) {
   fill_pixels();
-  const auto chunks = store_.chunks_in_view(view.intrinsics, view.world_from_cam, kMargin,
-                                            farthest_ * (1 + tolerance_per_metre_));
-  seen_.resize(chunks.size());
-  parallel_for(chunks.size(), [&](std::size_t c) { match_chunk(chunks[c], &seen_[c]); });
+  fill_blocks();
+  const auto cells = store_.cells_in_view(view.intrinsics, view.world_from_cam, kMargin,
+                                          farthest_ * (1 + tolerance_per_metre_));
+  seen_.resize(cells.size());
+  parallel_for(cells.size(), [&](std::size_t c) {
+    CloudCell& cell = store_.cells()[cells[c]];
+    if (!hidden(cell.box)) match_cell(&cell, &seen_[c]);
+  });
 }
 
 void ViewMatch::fill_pixels() {
@@ -75,13 +80,58 @@ void ViewMatch::fill_pixels() {
   parallel_for(2, [&](std::size_t i) {
     i == 0 ? cv::erode(low, nearest_around, window) : cv::dilate(high, farthest_around, window);
   });
-  for (std::size_t i = 0; i < pixels_.size(); ++i) {
-    pixels_[i] = {nearest_around(static_cast<int>(i)), farthest_around(static_cast<int>(i)),
-                  high(static_cast<int>(i)), 0};
-  }
+  parallel_chunks(size.height, kBlock, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      Pixel* row = &pixels_[static_cast<std::size_t>(y) * stride_];
+      for (int x = 0; x < stride_; ++x) {
+        row[x] = {nearest_around(y, x), farthest_around(y, x), high(y, x), 0};
+      }
+    }
+  });
 }
 
-void ViewMatch::match_chunk(std::uint32_t chunk, std::vector<Seen>* seen) {
+void ViewMatch::fill_blocks() {
+  const int height = static_cast<int>(pixels_.size()) / stride_;
+  blocks_ = Depth((height - 1) / kBlock + 1, (stride_ - 1) / kBlock + 1, 0.f);
+  parallel_for(blocks_.rows, [&](std::size_t row) {
+    const int first = static_cast<int>(row) * kBlock;
+    for (int y = first; y < std::min(first + kBlock, height); ++y) {
+      for (int x = 0; x < stride_; ++x) {
+        float& block = blocks_(static_cast<int>(row), x / kBlock);
+        block = std::max(block, pixels_[static_cast<std::size_t>(y) * stride_ + x].farthest);
+      }
+    }
+  });
+}
+
+/// Does all of the box lie behind what the view sees there? Such points get no word from it.
+bool ViewMatch::hidden(const Eigen::AlignedBox3f& box) const {
+  const Intrinsics& k = view_.intrinsics;
+  Eigen::AlignedBox2f image;
+  float nearest = std::numeric_limits<float>::max();
+  for (int i = 0; i < 8; ++i) {
+    const auto corner = static_cast<Eigen::AlignedBox3f::CornerType>(i);
+    const Eigen::Vector3f p = cam_from_world_ * box.corner(corner);
+    if (p.z() < 1e-3f) return false;
+    nearest = std::min(nearest, p.z());
+    image.extend(Eigen::Vector2f(p.x() / p.z(), p.y() / p.z()));
+  }
+  const auto block_of = [](double pixel, int most) {
+    return static_cast<int>(std::clamp(pixel + kMargin, 0.0, most - 1.0)) / kBlock;
+  };
+  const int width = stride_, height = static_cast<int>(pixels_.size()) / stride_;
+  const int x0 = block_of(k.fx * image.min().x() + k.cx - 1, width);
+  const int x1 = block_of(k.fx * image.max().x() + k.cx + 1, width);
+  const int y0 = block_of(k.fy * image.min().y() + k.cy - 1, height);
+  const int y1 = block_of(k.fy * image.max().y() + k.cy + 1, height);
+  float farthest = 0;
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) farthest = std::max(farthest, blocks_(y, x));
+  }
+  return nearest * 0.9999f > farthest * (1 + tolerance_per_metre_) + spacing(farthest);
+}
+
+void ViewMatch::match_cell(CloudCell* cell, std::vector<Seen>* seen) {
   const Intrinsics& k = view_.intrinsics;
   const auto fx = static_cast<float>(k.fx), fy = static_cast<float>(k.fy);
   const auto cx = static_cast<float>(k.cx), cy = static_cast<float>(k.cy);
@@ -90,54 +140,57 @@ void ViewMatch::match_chunk(std::uint32_t chunk, std::vector<Seen>* seen) {
   const auto bottom = static_cast<float>(k.height - 2 + kMargin);
   const Eigen::Matrix3f rotation = cam_from_world_.linear();
   const Eigen::Vector3f translation = cam_from_world_.translation();
-  const auto begin = static_cast<std::uint32_t>(chunk * CloudStore::kChunk);
-  const auto end =
-      static_cast<std::uint32_t>(std::min<std::size_t>(begin + CloudStore::kChunk, store_.size()));
-  for (std::uint32_t i = begin; i < end; ++i) {
-    __builtin_prefetch(&store_.point(i) + 32);
-    const Eigen::Vector3f p = rotation * store_.point(i).getVector3fMap() + translation;
+  for (std::size_t i = 0; i < cell->points.size(); ++i) {
+    const Point& point = cell->points[i];
+    const Eigen::Vector3f p = rotation * point.getVector3fMap() + translation;
     const float per_metre = 1 / p.z();
     const float u = fx * p.x() * per_metre + cx, v = fy * p.y() * per_metre + cy;
     const bool inside = p.z() > 1e-3f && u > 1 - kMargin && v > 1 - kMargin && u < right &&
-                        v < bottom && store_.alive(i);
-    if (inside) match_point(i, u, v, p.z(), seen);
+                        v < bottom && CloudStore::alive(point);
+    if (inside) match_point(cell, i, u, v, p.z(), seen);
   }
 }
 
-void ViewMatch::match_point(std::uint32_t index, float u, float v, float z,
+void ViewMatch::match_point(CloudCell* cell, std::size_t i, float u, float v, float z,
                             std::vector<Seen>* seen) {
   const int x = nearest_pixel(u), y = nearest_pixel(v);
   const Pixel& here = pixel(x, y);
   if (z > here.farthest * (1 + tolerance_per_metre_) + spacing(here.farthest)) return;
   if (z < here.nearest * (1 - tolerance_per_metre_)) {
-    Evidence& evidence = store_.evidence(index);
+    Evidence& evidence = cell->evidence[i];
     if (here.depth > 0 && evidence.seen_through < UINT16_MAX) ++evidence.seen_through;
     if (z < here.nearest - spacing(here.nearest)) return;
   }
-  if (support(index, u, v, x, y, &z)) {
-    store_.remove(index);
+  Point& point = cell->points[i];
+  if (support(cell, i, u, v, x, y, &z)) {
+    point.footprint = 0;
     ++removed_;
     return;
   }
-  const float own_footprint = store_.point(index).footprint, footprint = footprint_per_metre_ * z;
-  const float covers = std::max(own_footprint * spacing_footprints_, spacing_);
+  const float footprint = footprint_per_metre_ * z;
+  const float covers = std::max(point.footprint * spacing_footprints_, spacing_);
   draw(u, v, z, std::clamp(covers / footprint, 0.5f, 0.5f * kMostPixelsAcross));
   // A point that covers as much as the spacing has explained all that it may be too near to.
   const bool explains_all = covers > 1.01f * spacing(z) &&
                             covers < 0.5f * kMostPixelsAcross * footprint &&
                             spacing(z) < tolerance_per_metre_ * z;
   if (explains_all) return;
-  if (seen->capacity() == 0) seen->reserve(CloudStore::kChunk);
-  seen->push_back({index, u, v, z});
+  seen->emplace_back();
+  Seen& last =
+      seen->back();  // field by field: a whole one goes through memory in two widths, and stalls
+  last.point = &point;
+  last.u = u;
+  last.v = v;
+  last.z = z;
 }
 
 /// Lets the view speak for the point; returns whether its own pixels shall replace it.
-bool ViewMatch::support(std::uint32_t index, float u, float v, int x, int y, float* z) {
+bool ViewMatch::support(CloudCell* cell, std::size_t i, float u, float v, int x, int y, float* z) {
   const float d = pixel(x, y).depth;
   if (d <= 0 || std::fabs(*z - d) > tolerance_per_metre_ * d) return false;
-  Evidence& evidence = store_.evidence(index);
+  Evidence& evidence = cell->evidence[i];
   if (evidence.seen < UINT16_MAX) ++evidence.seen;
-  const Point& point = store_.point(index);
+  const Point& point = cell->points[i];
   const bool observed = origin_ == Origin::observed;
   const bool was_observed = point.origin == static_cast<std::uint8_t>(Origin::observed);
   if (was_observed && !observed)
@@ -145,20 +198,21 @@ bool ViewMatch::support(std::uint32_t index, float u, float v, int x, int y, flo
   if (observed && !was_observed) return true;
   if (footprint_per_metre_ * d < options_.better_footprint * point.footprint) return true;
   const float between = options_.average ? depth_at(u, v, d) : 0;
-  if (between > 0) *z = average(index, *z, between, view_.color(y, x));
+  if (between > 0) *z = average(cell, i, *z, between, view_.color(y, x));
   return false;
 }
 
 /// Moves the point along the view's ray to the weighted mean of what views say; returns its new z.
-float ViewMatch::average(std::uint32_t index, float z, float depth, const cv::Vec3f& color) {
-  Point& point = store_.point(index);
-  Evidence& evidence = store_.evidence(index);
+float ViewMatch::average(CloudCell* cell, std::size_t i, float z, float depth,
+                         const cv::Vec3f& color) {
+  Point& point = cell->points[i];
+  Evidence& evidence = cell->evidence[i];
   const float weight = view_weight(footprint_per_metre_ * depth);
   const float share = weight / (evidence.weight + weight);
   const Eigen::Vector3f centre = view_.world_from_cam.translation().cast<float>();
   const float scale = 1 + share * (depth - z) / z;
   point.getVector3fMap() = centre + scale * (point.getVector3fMap() - centre);
-  store_.moved(index);
+  cell->box.extend(point.getVector3fMap());
   evidence.r += share * (color[0] - evidence.r);
   evidence.g += share * (color[1] - evidence.g);
   evidence.b += share * (color[2] - evidence.b);
@@ -201,36 +255,39 @@ void ViewMatch::draw(float u, float v, float z, float half) {
 
 Mask ViewMatch::unexplained() const {
   Mask result(usable_.size());
-  for (int y = 0; y < result.rows; ++y) {
-    for (int x = 0; x < result.cols; ++x) {
-      const Pixel& here = pixel(x, y);
-      result(y, x) = here.depth > 0 && here.explained == 0;
+  parallel_chunks(result.rows, kBlock, [&](std::size_t begin, std::size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < result.cols; ++x) {
+        const Pixel& here = pixel(x, y);
+        result(y, x) =
+            static_cast<std::uint8_t>((here.depth > 0) & static_cast<int>(here.explained == 0));
+      }
     }
-  }
+  });
   return result;
 }
 
 void ViewMatch::drop_near_neighbours(Mask* candidates) const {
   Mask beside(candidates->size(), std::uint8_t{0});
-  const std::vector<std::uint32_t> points = points_beside(*candidates, &beside);
+  const std::vector<const Point*> points = points_beside(*candidates, &beside);
   if (!points.empty()) drop_near_points(points, beside, candidates);
   if (options_.spacing > 0 || options_.spacing_footprints > 1) thin(candidates);
 }
 
 /// The points that may be within the spacing of a candidate, and which candidates those are: the
 /// rest need not go through the KD-tree.
-std::vector<std::uint32_t> ViewMatch::points_beside(const Mask& candidates, Mask* beside) const {
+std::vector<const Point*> ViewMatch::points_beside(const Mask& candidates, Mask* beside) const {
   Mask near;
   cv::copyMakeBorder(candidates, near, kMargin, kMargin, kMargin, kMargin, cv::BORDER_CONSTANT);
   cv::dilate(near, near, cv::Mat1b(2 * reach_ + 3, 2 * reach_ + 3, 1));
-  std::vector<std::vector<std::uint32_t>> found(seen_.size());
+  std::vector<std::vector<const Point*>> found(seen_.size());
   parallel_for(seen_.size(), [&](std::size_t c) {
     for (const Seen& seen : seen_[c]) {
       const int x = nearest_pixel(seen.u) + kMargin, y = nearest_pixel(seen.v) + kMargin;
-      if (near(y, x) && this->beside(seen, candidates, beside)) found[c].push_back(seen.index);
+      if (near(y, x) && this->beside(seen, candidates, beside)) found[c].push_back(seen.point);
     }
   });
-  std::vector<std::uint32_t> points;
+  std::vector<const Point*> points;
   for (const auto& some : found) points.insert(points.end(), some.begin(), some.end());
   return points;
 }
@@ -255,14 +312,11 @@ bool ViewMatch::beside(const Seen& seen, const Mask& candidates, Mask* beside) c
   return any;
 }
 
-void ViewMatch::drop_near_points(const std::vector<std::uint32_t>& points, const Mask& beside,
+void ViewMatch::drop_near_points(const std::vector<const Point*>& points, const Mask& beside,
                                  Mask* candidates) const {
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
   cloud->reserve(points.size());
-  for (const std::uint32_t index : points) {
-    const Point& p = store_.point(index);
-    cloud->push_back({p.x, p.y, p.z});
-  }
+  for (const Point* p : points) cloud->push_back({p->x, p->y, p->z});
   pcl::KdTreeFLANN<pcl::PointXYZ> tree(false);
   tree.setInputCloud(cloud);
   parallel_chunks(candidates->rows, 8, [&](std::size_t begin, std::size_t end) {

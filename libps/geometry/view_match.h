@@ -45,22 +45,25 @@ class ViewMatch {
   };
   /// A point of the cloud that may be too near to a pixel that it does not explain.
   struct Seen {
-    std::uint32_t index;
+    const Point* point;
     float u, v, z;
   };
 
   void fill_pixels();
   Pixel& pixel(int x, int y) { return pixels_[(y + kMargin) * stride_ + x + kMargin]; }
   const Pixel& pixel(int x, int y) const { return pixels_[(y + kMargin) * stride_ + x + kMargin]; }
-  void match_chunk(std::uint32_t chunk, std::vector<Seen>* seen);
-  void match_point(std::uint32_t index, float u, float v, float z, std::vector<Seen>* seen);
-  bool support(std::uint32_t index, float u, float v, int x, int y, float* z);
-  float average(std::uint32_t index, float z, float depth, const cv::Vec3f& color);
+  void fill_blocks();
+  bool hidden(const Eigen::AlignedBox3f& box) const;
+  void match_cell(CloudCell* cell, std::vector<Seen>* seen);
+  void match_point(CloudCell* cell, std::size_t i, float u, float v, float z,
+                   std::vector<Seen>* seen);
+  bool support(CloudCell* cell, std::size_t i, float u, float v, int x, int y, float* z);
+  float average(CloudCell* cell, std::size_t i, float z, float depth, const cv::Vec3f& color);
   float depth_at(float u, float v, float nearest) const;
   void draw(float u, float v, float z, float half);
-  std::vector<std::uint32_t> points_beside(const Mask& candidates, Mask* beside) const;
+  std::vector<const Point*> points_beside(const Mask& candidates, Mask* beside) const;
   bool beside(const Seen& seen, const Mask& candidates, Mask* beside) const;
-  void drop_near_points(const std::vector<std::uint32_t>& points, const Mask& beside,
+  void drop_near_points(const std::vector<const Point*>& points, const Mask& beside,
                         Mask* candidates) const;
   void thin(Mask* candidates) const;
   float spacing(float depth) const {
@@ -83,7 +86,8 @@ class ViewMatch {
   float farthest_ = 0;  ///< greatest usable depth
   int stride_;          ///< pixels in a row, margins included
   std::vector<Pixel> pixels_;
-  std::vector<std::vector<Seen>> seen_;  ///< by chunk in view
+  Depth blocks_;                         ///< greatest usable depth of blocks of pixels
+  std::vector<std::vector<Seen>> seen_;  ///< by cell in view
   std::atomic<std::size_t> removed_{0};
 };
 
