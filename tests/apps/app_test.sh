@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# app_test.sh PROGRAM SAMPLES SNIPPET: runs the snippet in an empty folder; every line of it must succeed.
+# app_test.sh PROGRAM SAMPLES SNIPPET: runs the snippet in an empty folder; every line of it must succeed;
+# one claim for each line, as `A && B` cannot fail under set -e unless it is the last.
 # In it, `pixelsynth` is the program, $S the samples, and these are claims:
 set -euo pipefail
 program=$1 S=$2 snippet=$3
@@ -15,6 +16,9 @@ complain() {
   [ ! -s "$work/err" ] || sed 's/^/stderr: /' "$work/err" >&2
   exit 1
 }
+
+# is OPERANDS...: `[` says so. Under set -e a failing `[ A ] && [ B ]` ends nothing; this ends the test.
+is() { [ "$@" ] || complain "not: $*"; }
 
 pixelsynth() { $program "$@"; }
 

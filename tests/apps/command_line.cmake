@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # What holds for all verbs: exit status, one line for one failure, nothing half-written.
-app_test(no_verb_prints_help "works && prints 'Subcommands' && prints 'fuse'")
+app_test(no_verb_prints_help [=[
+  works
+  prints 'Subcommands'
+  prints 'fuse']=])
 app_test(every_verb_has_help [=[for v in scene fuse render view "probe splat"; do works $v --help; prints Options; done]=])
-app_test(version_is_printed "works --version && prints '^pixelsynth [0-9]+[.][0-9]+[.][0-9]+$'")
+app_test(version_is_printed [=[
+  works --version
+  prints '^pixelsynth [0-9]+[.][0-9]+[.][0-9]+$']=])
 app_test(unknown_verb_is_wrong_usage "fails 2 'frobnicate' frobnicate")
 app_test(unknown_option_is_wrong_usage "fails 2 'nonsense.*see pixelsynth fuse --help' fuse $S/walk -o a.ply --nonsense")
 app_test(missing_output_is_wrong_usage "fails 2 'output is required' fuse $S/walk")
@@ -25,9 +30,16 @@ app_test(common_options_stand_before_or_after_the_verb [=[
   works -q --threads 1 fuse $S/walk -o a.ply --every 3
   works fuse $S/walk -o b.ply --every 3 --threads 1 -q
   cmp a.ply b.ply]=])
-app_test(quiet_says_nothing [=[works -q fuse $S/walk -o a.ply --every 3 && [ ! -s "$work/err" ] && [ ! -s "$work/out" ]]=])
-app_test(without_a_terminal_there_is_no_bar [=[works fuse $S/walk -o a.ply --every 3 && [ $(wc -l <"$work/err") -eq 1 ]]=])
-app_test(json_on_stdout_is_the_report [=[works -q --json fuse $S/walk -o a.ply && cmp "$work/out" a.report.json]=])
+app_test(quiet_says_nothing [=[
+  works -q fuse $S/walk -o a.ply --every 3
+  is ! -s "$work/err"
+  is ! -s "$work/out"]=])
+app_test(without_a_terminal_there_is_no_bar [=[
+  works fuse $S/walk -o a.ply --every 3
+  is "$(wc -l <"$work/err")" -eq 1]=])
+app_test(json_on_stdout_is_the_report [=[
+  works -q --json fuse $S/walk -o a.ply
+  cmp "$work/out" a.report.json]=])
 app_test(missing_files_are_named [=[
   fails 1 'absent' fuse absent -o a.ply
   fails 1 'absent.ply' render absent.ply -o a.png
@@ -41,7 +53,8 @@ app_test(outputs_that_cannot_be_are_refused_before_the_work [=[
   fails 1 'no_folder' render $S/mixed.ply -o no_folder/a.mp4
   fails 1 'mp4 or .png' render $S/mixed.ply -o a.avi
   fails 1 'no_folder' scene $S/photo.png --depth $S/depth.png --no-outpaint -o no_folder/a
-  touch file && fails 1 'is a file' scene $S/photo.png --depth $S/depth.png --no-outpaint -o file]=])
+  touch file
+  fails 1 'is a file' scene $S/photo.png --depth $S/depth.png --no-outpaint -o file]=])
 app_test(bad_photos_fail_with_one_line [=[
   for f in nothing.jpg truncated.jpg truncated.png text.png; do
     fails 1 $f scene $S/$f --depth $S/depth.png --no-outpaint -o a

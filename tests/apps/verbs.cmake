@@ -4,9 +4,13 @@ app_test(fuse_writes_cloud_report_settings_poses_and_lens [=[
   works fuse $S/walk -o a.ply
   writes a.ply a.report.json a.settings.json a.trajectory.txt a.intrinsics.json
   head -c 3 a.ply | grep -q ply
-  [ $(json views a.report.json) -eq 7 ] && [ $(json points a.report.json) -gt 5000 ]
+  is "$(json views a.report.json)" -eq 7
+  is "$(json points a.report.json)" -gt 5000
   says 'a.ply: [0-9]+ points from 7 views']=])
-app_test(fuse_writes_pcd "works fuse $S/walk -o a.pcd && writes a.pcd && head -n 1 a.pcd | grep -q PCD")
+app_test(fuse_writes_pcd [=[
+  works fuse $S/walk -o a.pcd
+  writes a.pcd
+  head -n 1 a.pcd | grep -q PCD]=])
 app_test(fuse_does_not_depend_on_threads [=[
   works --threads 1 fuse $S/walk -o a.ply
   works --threads 3 fuse $S/walk -o b.ply
@@ -15,24 +19,28 @@ app_test(fuse_does_not_depend_on_the_order_of_folders [=[
   works fuse $S/part_a $S/part_b -o a.ply
   works fuse $S/part_b $S/part_a -o b.ply
   works fuse $S/walk -o c.ply
-  cmp a.ply b.ply && cmp a.ply c.ply]=])
+  cmp a.ply b.ply
+  cmp a.ply c.ply]=])
 app_test(fuse_frames_are_inclusive_and_every_counts_within_them [=[
   works fuse $S/walk -o a.ply --frames 2:5
-  [ $(json views a.report.json) -eq 4 ]
+  is "$(json views a.report.json)" -eq 4
   works fuse $S/walk -o a.ply --frames 2:5 --every 2
   grep -v '#' a.trajectory.txt | cut -d' ' -f1 | xargs | grep -qx '2 4'
   works fuse $S/walk -o a.ply --frames 5:
-  [ $(json views a.report.json) -eq 2 ]
+  is "$(json views a.report.json)" -eq 2
   works fuse $S/walk -o a.ply --frames :0
-  [ $(json views a.report.json) -eq 1 ]
-  rm a.* && fails 1 frames fuse $S/walk -o b.ply --frames 100:]=])
+  is "$(json views a.report.json)" -eq 1
+  rm a.*
+  fails 1 frames fuse $S/walk -o b.ply --frames 100:]=])
 app_test(fuse_holds_frames_out [=[
   works fuse $S/walk -o a.ply --hold-out 3
   grep -v '#' a.held-out.txt | cut -d' ' -f1 | xargs | grep -qx '1 4'
-  [ $(json views a.report.json) -eq 5 ] && [ $(json held_out a.report.json) -eq 2 ]]=])
+  is "$(json views a.report.json)" -eq 5
+  is "$(json held_out a.report.json)" -eq 2]=])
 app_test(fuse_with_a_wider_spacing_keeps_fewer_points [=[
-  works fuse $S/walk -o a.ply && works fuse $S/walk -o b.ply --spacing 0.1
-  [ $(json points b.report.json) -lt $(($(json points a.report.json) / 2)) ]]=])
+  works fuse $S/walk -o a.ply
+  works fuse $S/walk -o b.ply --spacing 0.1
+  is "$(json points b.report.json)" -lt $(($(json points a.report.json) / 2))]=])
 app_test(settings_hold_every_option_and_the_seed [=[
   works --seed 7 fuse $S/walk -o a.ply --every 2
   for key in '"seed": 7' '"version"' '"every": 2' '"edge-footprints"' '"depth-scale": 1000'; do
@@ -42,14 +50,15 @@ app_test(render_writes_frames_poses_and_lens_into_a_folder [=[
   works fuse $S/walk -o a.ply
   works render a.ply -o r --trajectory sway --frames 5 --depth
   writes r/frame_0000{0,1,2,3,4}.png r/depth_0000{0,4}.png r/trajectory.txt r/intrinsics.json
-  [ $(ls r | wc -l) -eq 12 ] && [ $(grep -vc '#' r/trajectory.txt) -eq 5 ]
-  [ $(size_of r/frame_00000.png) = 96x64 ]]=])
+  is "$(ls r | wc -l)" -eq 12
+  is "$(grep -vc '#' r/trajectory.txt)" -eq 5
+  is "$(size_of r/frame_00000.png)" = 96x64]=])
 app_test(render_again_replaces_its_frames_and_keeps_other_files [=[
   works render $S/mixed.ply -o r --frames 5 --size 64x48
   echo mine > r/notes.txt
   works render $S/mixed.ply -o r --frames 2 --size 32x24
-  [ "$(ls r | xargs)" = "frame_00000.png frame_00001.png intrinsics.json notes.txt trajectory.txt" ]
-  [ $(size_of r/frame_00000.png) = 32x24 ]]=])
+  is "$(ls r | xargs)" = "frame_00000.png frame_00001.png intrinsics.json notes.txt trajectory.txt"
+  is "$(size_of r/frame_00000.png)" = 32x24]=])
 app_test(render_follows_every_kind_of_path [=[
   for p in circle sway left right up down up-left up-right down-left down-right $S/walk/trajectory.txt; do
     works render $S/mixed.ply -o r.png --trajectory $p --size 40x30
@@ -57,53 +66,68 @@ app_test(render_follows_every_kind_of_path [=[
   fails 1 'spiral.*up-left' render $S/mixed.ply -o r --trajectory spiral]=])
 app_test(render_takes_all_poses_of_a_file_or_some [=[
   works render $S/mixed.ply -o r --trajectory $S/walk/trajectory.txt --size 40x30
-  [ $(ls r/frame* | wc -l) -eq 7 ]
+  is "$(ls r/frame* | wc -l)" -eq 7
   works render $S/mixed.ply -o r --trajectory $S/walk/trajectory.txt --size 40x30 --frames 3
-  [ $(ls r/frame* | wc -l) -eq 3 ]]=])
+  is "$(ls r/frame* | wc -l)" -eq 3]=])
 app_test(render_at_the_photo_s_pose_gives_the_photo_back [=[
   needs ffmpeg
   works scene $S/photo.png --depth $S/depth.png --intrinsics $S/lens.json --no-outpaint -o s
   works render s/scene.ply -o r.png --radius 0.9
-  for xy in '20 20' '48 32' '70 10' '80 55'; do [ "$(pixel r.png $xy)" = "$(pixel $S/photo.png $xy)" ]; done]=])
+  for xy in '20 20' '48 32' '70 10' '80 55'; do is "$(pixel r.png $xy)" = "$(pixel $S/photo.png $xy)"; done]=])
 app_test(render_left_looks_left [=[
   needs ffmpeg
   works scene $S/photo.png --depth $S/depth.png --intrinsics $S/lens.json --no-outpaint -o s
   works render s/scene.ply -o r --trajectory left --frames 2 --background 255,0,255
-  [ "$(pixel r/frame_00001.png 2 32)" = "255 0 255" ] && [ "$(pixel r/frame_00001.png 94 32)" != "255 0 255" ]
+  is "$(pixel r/frame_00001.png 2 32)" = "255 0 255"
+  is "$(pixel r/frame_00001.png 94 32)" != "255 0 255"
   works render s/scene.ply -o r --trajectory up --frames 2 --background 255,0,255
-  [ "$(pixel r/frame_00001.png 48 2)" = "255 0 255" ] && [ "$(pixel r/frame_00001.png 48 62)" != "255 0 255" ]]=])
+  is "$(pixel r/frame_00001.png 48 2)" = "255 0 255"
+  is "$(pixel r/frame_00001.png 48 62)" != "255 0 255"]=])
 app_test(render_leaves_no_dark_holes_between_points [=[
   needs ffmpeg
   works scene $S/photo.png --depth $S/depth.png --intrinsics $S/lens.json --no-outpaint -o s
   works render s/scene.ply -o r.png --trajectory s/trajectory.txt --size 384x256
-  [ "$(pixel r.png 192 40 | cut -d' ' -f3)" -gt 190 ]]=])
+  is "$(pixel r.png 192 40 | cut -d' ' -f3)" -gt 190]=])
 app_test(render_writes_h264_that_browsers_play [=[
   needs ffprobe
   works render $S/mixed.ply -o r.mp4 --frames 8 --size 75x51 --fps 10
   ffprobe -v error -show_entries stream=codec_name,pix_fmt,width,height,nb_frames -of csv=p=0 r.mp4 > probe.txt
   grep -qx 'h264,76,52,yuv420p,8' probe.txt || complain "$(cat probe.txt)"]=])
 app_test(render_picks_points_by_origin [=[
-  works --json render $S/mixed.ply -o r.png && all=$(json points "$work/out")
-  works --json render $S/mixed.ply -o r.png --origin observed && seen=$(json points "$work/out")
-  works --json render $S/mixed.ply -o r.png --origin outpainted && made=$(json points "$work/out")
-  [ $((seen + made)) -eq $all ] && [ $seen -gt 0 ] && [ $made -gt 0 ]
-  rm r.png && fails 1 outpainted render $S/seen.pcd -o r.png --origin outpainted]=])
+  works --json render $S/mixed.ply -o r.png
+  all=$(json points "$work/out")
+  works --json render $S/mixed.ply -o r.png --origin observed
+  seen=$(json points "$work/out")
+  works --json render $S/mixed.ply -o r.png --origin outpainted
+  made=$(json points "$work/out")
+  is $((seen + made)) -eq $all
+  is $seen -gt 0
+  is $made -gt 0
+  rm r.png
+  fails 1 outpainted render $S/seen.pcd -o r.png --origin outpainted]=])
 app_test(render_keeps_the_lens_and_never_squashes [=[
   works --json render $S/mixed.ply -o r.png --intrinsics $S/lens.json --size 100x100
-  [ $(size_of r.png) = 100x100 ]
+  is "$(size_of r.png)" = 100x100
   fx=$(sed -n 's/.*"fx": \([^,]*\).*/\1/p' "$work/out") fy=$(sed -n 's/.*"fy": \([^,]*\).*/\1/p' "$work/out")
-  [ $fx = $fy ]]=])
+  is -n "$fx"
+  is "$fx" = "$fy"]=])
 app_test(render_without_poses_starts_outside_and_says_so [=[
-  works render $S/seen.pcd -o r.png && says 'start: outside' && says 'lens: 60']=])
-app_test(render_takes_clouds_without_colour "works render $S/no_color.ply -o r.png && writes r.png")
+  works render $S/seen.pcd -o r.png
+  says 'start: outside'
+  says 'lens: 60']=])
+app_test(render_takes_clouds_without_colour [=[
+  works render $S/no_color.ply -o r.png
+  writes r.png]=])
 app_test(scene_writes_all_its_files [=[
   works scene $S/photo.jpg --depth $S/depth.png --fov 70 --no-outpaint -o s
   writes s/scene.ply s/preview.png s/trajectory.txt s/intrinsics.json s/report.json s/settings.json s/views/input.png
   for d in left right up down up-left up-right down-left down-right; do writes s/views/$d.png; done
-  [ $(grep -vc '#' s/trajectory.txt) -eq 9 ] && [ $(json outpainted s/report.json) -eq 0 ]
+  is "$(grep -vc '#' s/trajectory.txt)" -eq 9
+  is "$(json outpainted s/report.json)" -eq 0
   says 's: [0-9]+ points']=])
 app_test(scene_scales_depth_of_another_size_with_a_warning [=[
-  works scene $S/photo.png --depth $S/half.png --fov 70 --no-outpaint -o s && says 'warning.*48x32.*96x64']=])
+  works scene $S/photo.png --depth $S/half.png --fov 70 --no-outpaint -o s
+  says 'warning.*48x32.*96x64']=])
 app_test(scene_refuses_depth_of_another_shape "fails 1 'square.png.*aspect' scene $S/photo.png --depth $S/square.png --no-outpaint -o s")
 app_test(scene_refuses_a_lens_of_another_shape "fails 1 'square_lens.*aspect' scene $S/photo.png --depth $S/depth.png --no-outpaint -o s --intrinsics $S/square_lens.json")
 app_test(scene_refuses_depth_without_a_value "fails 1 zero.png scene $S/photo.png --depth $S/zero.png --no-outpaint -o s")
@@ -112,25 +136,36 @@ app_test(scene_refuses_a_depth_range_without_pixels "fails 1 'range' scene $S/ph
 app_test(scene_says_what_to_pass_while_there_are_no_networks [=[
   fails 1 'networks.*--depth' scene $S/photo.png -o s
   fails 1 'networks.*--no-outpaint' scene $S/photo.png --depth $S/depth.png -o s]=])
-app_test(scene_says_which_lens_it_takes "works scene $S/photo.png --depth $S/depth.png --no-outpaint -o s && says 'lens: 60 degrees'")
+app_test(scene_says_which_lens_it_takes [=[
+  works scene $S/photo.png --depth $S/depth.png --no-outpaint -o s
+  says 'lens: 60 degrees']=])
 app_test(view_takes_a_picture_without_a_screen [=[
   needs Xvfb
-  works view $S/mixed.ply --screenshot v.png --size 200x150 && [ $(size_of v.png) = 200x150 ]]=])
+  works view $S/mixed.ply --screenshot v.png --size 200x150
+  is "$(size_of v.png)" = 200x150]=])
 app_test(view_shows_the_photo_the_right_way_up [=[
-  needs Xvfb && needs ffmpeg
+  needs Xvfb
+  needs ffmpeg
   works scene $S/photo.png --depth $S/depth.png --intrinsics $S/lens.json --no-outpaint -o s
   works view s/scene.ply --screenshot v.png --size 192x128 --no-axes --no-cameras
-  read -r r g b <<<"$(pixel v.png 96 64)" && [ $r -gt 200 ]
-  read -r r g b <<<"$(pixel v.png 20 20)" && [ $r -gt 150 ] && [ $b -gt 190 ]
-  read -r r g b <<<"$(pixel v.png 170 20)" && [ $r -lt 50 ] && [ $b -gt 190 ]
-  read -r r g b <<<"$(pixel v.png 150 110)" && [ $g -gt 190 ]]=])
+  read -r r g b <<<"$(pixel v.png 96 64)"
+  is $r -gt 200
+  read -r r g b <<<"$(pixel v.png 20 20)"
+  is $r -gt 150
+  is $b -gt 190
+  read -r r g b <<<"$(pixel v.png 170 20)"
+  is $r -lt 50
+  is $b -gt 190
+  read -r r g b <<<"$(pixel v.png 150 110)"
+  is $g -gt 190]=])
 app_test(view_colours_by_each_property [=[
   needs Xvfb
   for c in photo depth view origin; do works view $S/mixed.ply --screenshot $c.png --color-by $c --size 120x90; done
   for c in depth view origin; do ! cmp -s photo.png $c.png || complain "$c looks like photo"; done]=])
 app_test(view_without_a_screen_says_what_to_do "fails 1 'DISPLAY.*--screenshot' -q view $S/mixed.ply")
 app_test(view_without_xvfb_says_what_to_install [=[
-  program="env PATH=/nowhere $program" && fails 1 'xvfb' -q view $S/mixed.ply --screenshot v.png]=])
+  program="env PATH=/nowhere $program"
+  fails 1 'xvfb' -q view $S/mixed.ply --screenshot v.png]=])
 app_test(probe_splat_writes_all_tensors [=[
   works probe splat --in $S/two.safetensors --out o.safetensors --size 16
   for t in image count idx4 bg_raw bg_dilated; do head -c 600 o.safetensors | grep -aq "\"$t\"" || complain "$t is missing"; done]=])
