@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <opencv2/core.hpp>
 
 namespace ps {
@@ -13,5 +15,10 @@ using Depth = cv::Mat1f;
 
 /// 0 or 1 for each pixel.
 using Mask = cv::Mat1b;
+
+/// @return a colour in [0,1] as 0 to 255, rounded; what is outside is clamped, NaN is 0
+inline std::uint8_t to_byte(float color) {
+  return static_cast<std::uint8_t>(std::lround(std::fmin(std::fmax(color, 0.f), 1.f) * 255));
+}
 
 }  // namespace ps

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "libps/geometry/cloud_store.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "libps/core/error.h"
 
 namespace ps {
 namespace {
@@ -31,7 +34,8 @@ void CloudStore::add(const Point& point, Evidence evidence) {
   const float cells_per_metre = std::ldexp(1.0f, -exponent);
   Key key = {exponent, 0, 0, 0};
   for (int axis = 0; axis < 3; ++axis) {
-    key[axis + 1] = static_cast<std::int32_t>(std::floor(point.data[axis] * cells_per_metre));
+    const float place = std::floor(point.data[axis] * cells_per_metre);
+    key[axis + 1] = static_cast<std::int32_t>(std::clamp(place, -2e9f, 2e9f));
   }
   if (last_cell_ == UINT32_MAX || key != last_key_) {
     const auto [place, is_new] = places_.emplace(key, static_cast<std::uint32_t>(cells_.size()));
@@ -39,6 +43,7 @@ void CloudStore::add(const Point& point, Evidence evidence) {
     last_key_ = key;
     last_cell_ = place->second;
   }
+  if (numbers_ == UINT32_MAX) throw Error("scene cloud", "more than 4294967295 points", "fewer");
   CloudCell& cell = cells_[last_cell_];
   evidence.number = numbers_++;
   cell.points.push_back(point);

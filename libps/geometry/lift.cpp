@@ -48,14 +48,11 @@ void clear_flying(const float* __restrict row, const float* __restrict before,
 
 Point make_point(const Eigen::Vector3d& position, const cv::Vec3f& rgb, double footprint,
                  std::uint16_t view_number, Origin origin) {
-  const auto byte = [](float c) {
-    return static_cast<std::uint8_t>(std::lround(std::fmin(std::fmax(c, 0.f), 1.f) * 255));
-  };
   Point p;
   p.getVector3fMap() = position.cast<float>();
-  p.r = byte(rgb[0]);
-  p.g = byte(rgb[1]);
-  p.b = byte(rgb[2]);
+  p.r = to_byte(rgb[0]);
+  p.g = to_byte(rgb[1]);
+  p.b = to_byte(rgb[2]);
   p.footprint = static_cast<float>(footprint);
   p.view = view_number;
   p.origin = static_cast<std::uint8_t>(origin);
@@ -95,8 +92,10 @@ Mask liftable(const Depth& depth, const Intrinsics& intrinsics, const LiftOption
 
 Cloud lift(const View& view, const Mask& pixels, std::uint16_t view_number, Origin origin) {
   check(view.intrinsics, "lift");
-  if (view.depth.size() != pixels.size() || view.color.size() != pixels.size()) {
-    throw Error("lift", "photo, depth and mask differ in size", "one size");
+  checked_pose(view.world_from_cam.matrix(), "lift");
+  const cv::Size size(view.intrinsics.width, view.intrinsics.height);
+  if (view.depth.size() != size || view.color.size() != size || pixels.size() != size) {
+    throw Error("lift", "photo, depth, mask and intrinsics differ in size", "one size");
   }
   const Intrinsics& k = view.intrinsics;
   std::vector<std::size_t> row_start(pixels.rows + 1, 0);

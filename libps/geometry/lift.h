@@ -23,9 +23,10 @@ struct LiftOptions {
 Mask liftable(const Depth& depth, const Intrinsics& intrinsics, const LiftOptions& options = {});
 
 /// @brief Lifts pixels to coloured points in the world frame (SPEC.md 1; PixelSynth section 3.1).
-/// @param pixels  lifts where this is not 0; of the view's size
+/// @param pixels  lifts where this is not 0; of the view's size; chosen pixels must have a depth
 /// @param view_number  written to each point's `view`
-/// Points come in row-major order of their pixels. Throws ps::Error when sizes differ.
+/// Points come in row-major order of their pixels. Throws ps::Error when sizes
+/// differ or the pose is no rigid transform.
 Cloud lift(const View& view, const Mask& pixels, std::uint16_t view_number, Origin origin);
 
 /// @brief The same, for all liftable pixels.

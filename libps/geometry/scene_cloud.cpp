@@ -14,29 +14,28 @@
 namespace ps {
 namespace {
 
+constexpr float kNearest = 1e-3f;  ///< metres; nearer pixels are no surface (SplatOptions::near)
+
 void check(const SceneCloudOptions& o) {
   const bool sound = o.tolerance_relative >= 0 && o.tolerance_footprints >= 0 &&
                      o.spacing_footprints >= 0 && o.spacing >= 0 && o.better_footprint >= 0 &&
-                     o.better_footprint <= 1;
+                     o.better_footprint <= 1 && o.lift.min_depth <= o.lift.max_depth &&
+                     o.lift.edge_footprints >= 0;
   if (!sound) {
-    throw Error("scene cloud options", "a tolerance or spacing is out of range",
-                "tolerances and spacings of at least 0, better_footprint in [0, 1]");
+    throw Error(
+        "scene cloud options", "one is out of range",
+        "tolerances, spacings and edge_footprints of at least 0, better_footprint in [0, 1], "
+        "min_depth <= max_depth");
   }
-}
-
-std::uint8_t to_byte(float color) {
-  return static_cast<std::uint8_t>(std::lround(std::clamp(color, 0.f, 1.f) * 255));
 }
 
 /// Points are kept in single precision: refuses views whose pixels it could not tell apart.
-void check_precision(const View& view, const std::string& where) {
-  float farthest = 0;
-  for (const float d : view.depth) {
-    farthest = d <= std::numeric_limits<float>::max() ? std::max(farthest, d) : farthest;
-  }
+void check_precision(const View& view, const Mask& usable, const std::string& where) {
+  double farthest = 0;
+  cv::minMaxLoc(view.depth, nullptr, &farthest, nullptr, nullptr, usable);
   const double place = view.world_from_cam.translation().cwiseAbs().maxCoeff() + farthest;
   const double finest = std::numeric_limits<float>::epsilon() * place;
-  if (view.intrinsics.footprint_per_metre() * farthest < 2 * finest) {
+  if (farthest > 0 && view.intrinsics.footprint_per_metre() * farthest < 2 * finest) {
     throw Error(where, "its pixels are nearer to each other than single precision can tell apart",
                 "poses near the origin, in metres, and focal lengths in pixels");
   }
@@ -61,7 +60,6 @@ SceneCloud& SceneCloud::operator=(SceneCloud&&) noexcept = default;
 AddReport SceneCloud::add(const View& view, std::uint16_t view_number, Origin origin,
                           const Mask& pixels) {
   check(view, "view " + std::to_string(view_number));
-  check_precision(view, "view " + std::to_string(view_number));
   Mask usable = liftable(view.depth, view.intrinsics, impl_->options.lift);
   if (!pixels.empty()) {
     if (pixels.size() != usable.size()) {
@@ -70,6 +68,8 @@ AddReport SceneCloud::add(const View& view, std::uint16_t view_number, Origin or
     }
     usable.setTo(0, pixels == 0);
   }
+  usable.setTo(0, view.depth < kNearest);
+  check_precision(view, usable, "view " + std::to_string(view_number));
   AddReport report;
   report.lifted = cv::countNonZero(usable);
 

@@ -17,7 +17,9 @@ struct SceneCloudOptions {
   double tolerance_footprints = 3;
   /// A new point is dropped when an old one is nearer than this many of its own footprints.
   double spacing_footprints = 1;
-  /// ... or nearer than this, metres: 0 keeps all that the sensor resolves.
+  /// ... or nearer than this, metres: 0 keeps all that the sensor resolves. It is kept where it
+  /// spans up to 24 pixels of a view, inside the view's image; beyond, points may be nearer to each
+  /// other.
   double spacing = 0;
   /// A view whose footprint is below this share of a point's replaces the point by its own pixels.
   double better_footprint = 0.7;
@@ -48,7 +50,8 @@ class SceneCloud {
   SceneCloud(SceneCloud&&) noexcept;
   SceneCloud& operator=(SceneCloud&&) noexcept;
 
-  /// @brief Adds a view. Throws ps::Error (nothing is changed then) when the view is unsound.
+  /// @brief Adds a view. Throws ps::Error (nothing is changed then) when the view is unsound, or
+  /// when its pixels are nearer to each other than floats can tell apart where it stands.
   /// @param pixels  empty: all liftable pixels; else only where it is not 0
   AddReport add(const View& view, std::uint16_t view_number, Origin origin = Origin::observed,
                 const Mask& pixels = {});

@@ -19,6 +19,7 @@ using splat_kernel::kTile;
 using splat_kernel::Tile;
 using splat_kernel::TilePoint;
 
+constexpr int kLargest = 16384;  ///< pixels on a side
 constexpr int kBatch = 32;
 /// What is behind a transmittance this small cannot change a rounded 8-bit colour.
 constexpr float kEnough = 1.0f / 1024;
@@ -35,13 +36,14 @@ splat_kernel::Blend pick_blend() {
 }
 
 void check(const SplatOptions& o, cv::Size size) {
-  if (size.width <= 0 || size.height <= 0 || size.area() > (1 << 28)) {
+  if (size.width <= 0 || size.height <= 0 || size.width > kLargest || size.height > kLargest) {
     throw Error("splat size", std::to_string(size.width) + "x" + std::to_string(size.height),
                 "1x1 to 16384x16384");
   }
   if (!(o.radius > 0 && o.radius <= 64)) {
     throw Error("splat radius", std::to_string(o.radius), "more than 0 and at most 64 pixels");
   }
+  if (!(o.near >= 0)) throw Error("splat near", std::to_string(o.near), "at least 0");
   if (o.points_per_pixel < 1) {
     throw Error("points per pixel", std::to_string(o.points_per_pixel), "at least 1");
   }
@@ -168,6 +170,7 @@ Splat splat(const PointsView& points, const Intrinsics& intrinsics, const Pose& 
   const cv::Size size(intrinsics.width, intrinsics.height);
   check(options, size);
   check(intrinsics, "splat");
+  checked_pose(world_from_cam.matrix(), "splat");
   const PlaneArrays plane = project_points(points, intrinsics, world_from_cam, options.near);
   return Painter(plane, size, options).paint([&](std::size_t i) {
     std::uint8_t bgr[3];

@@ -67,7 +67,8 @@ struct PlanePoints {
 
 /// @brief Splats a cloud into a camera. Points that are not finite are skipped.
 /// The result does not depend on the number of threads or on the machine's vector width.
-/// Throws ps::Error when the camera or an option is unsound (radius in (0, 64], dilation odd).
+/// Throws ps::Error when the camera, the pose or an option is unsound: sides up to 16384 pixels,
+/// radius in (0, 64], dilation odd, near at least 0.
 Splat splat(const PointsView& points, const Intrinsics& intrinsics, const Pose& world_from_cam,
             const SplatOptions& options = {});
 

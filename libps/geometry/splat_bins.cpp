@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "libps/core/error.h"
 #include "libps/core/parallel.h"
@@ -15,6 +16,7 @@ namespace {
 using splat_kernel::kTile;
 
 constexpr std::size_t kChunk = 16384;
+constexpr std::size_t kMostParts = 64;
 constexpr std::size_t kBucket = 12;  ///< entries aimed at in a bucket of depth
 
 std::uint32_t bits_of(float x) {
@@ -97,7 +99,8 @@ TileBins bin_points(const PlaneArrays& points, cv::Size size, float radius) {
   const TileRanges ranges(points, size, radius);
 
   // Few parts, so that counters stay small beside the points; tiles sort their entries themselves.
-  const std::size_t parts = std::min<std::size_t>(4 * threads(), (count + kChunk - 1) / kChunk);
+  const std::size_t parts =
+      std::min<std::size_t>({4u * threads(), kMostParts, (count + kChunk - 1) / kChunk});
   const std::size_t part_size = parts ? (count + parts - 1) / parts : 1;
   std::vector<std::vector<std::size_t>> at(parts, std::vector<std::size_t>(tiles, 0));
   const auto for_each_entry = [&](std::size_t begin, std::size_t end, const auto& visit) {

@@ -106,7 +106,8 @@ inline void blend_block(Gathered* block, int at, TilePoint p, Floats d2, float i
   // Wide blocks are mostly hit, and a branch that is hard to foretell costs more than the sums.
   if (kLanes < 16 && !any(hit)) return;
   const Floats share = d2 * inverse_r2;
-  const Floats alpha = 1.0f - square_root(select(less(share, all(1e-3f)), all(1e-3f), share));
+  const Floats low = select(less(share, all(1e-3f)), all(1e-3f), share);
+  const Floats alpha = 1.0f - square_root(select(less(all(1.0f), low), all(1.0f), low));
   const Floats weight = select(hit, alpha * left, Floats{});
   const Lanes first = hit & is_zero(count);
   floats(block->first + at) = select(first, all(p.z), floats(block->first + at));

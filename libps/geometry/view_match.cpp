@@ -158,7 +158,8 @@ void ViewMatch::match_point(CloudCell* cell, std::size_t i, float u, float v, fl
   if (z > here.farthest * (1 + tolerance_per_metre_) + spacing(here.farthest)) return;
   if (z < here.nearest * (1 - tolerance_per_metre_)) {
     Evidence& evidence = cell->evidence[i];
-    if (here.depth > 0 && evidence.seen_through < UINT16_MAX) ++evidence.seen_through;
+    const bool heard = here.depth > 0 && may_speak_of(cell->points[i]);
+    if (heard && evidence.seen_through < UINT16_MAX) ++evidence.seen_through;
     if (z < here.nearest - spacing(here.nearest)) return;
   }
   Point& point = cell->points[i];
@@ -188,14 +189,11 @@ void ViewMatch::match_point(CloudCell* cell, std::size_t i, float u, float v, fl
 bool ViewMatch::support(CloudCell* cell, std::size_t i, float u, float v, int x, int y, float* z) {
   const float d = pixel(x, y).depth;
   if (d <= 0 || std::fabs(*z - d) > tolerance_per_metre_ * d) return false;
+  const Point& point = cell->points[i];
+  if (!may_speak_of(point)) return false;
   Evidence& evidence = cell->evidence[i];
   if (evidence.seen < UINT16_MAX) ++evidence.seen;
-  const Point& point = cell->points[i];
-  const bool observed = origin_ == Origin::observed;
-  const bool was_observed = point.origin == static_cast<std::uint8_t>(Origin::observed);
-  if (was_observed && !observed)
-    return false;  // what was seen is never changed by what is invented
-  if (observed && !was_observed) return true;
+  if (static_cast<Origin>(point.origin) != origin_) return true;  // observed at last
   if (footprint_per_metre_ * d < options_.better_footprint * point.footprint) return true;
   const float between = options_.average ? depth_at(u, v, d) : 0;
   if (between > 0) *z = average(cell, i, *z, between, view_.color(y, x));

@@ -59,6 +59,10 @@ class ViewMatch {
                    std::vector<Seen>* seen);
   bool support(CloudCell* cell, std::size_t i, float u, float v, int x, int y, float* z);
   float average(CloudCell* cell, std::size_t i, float z, float depth, const cv::Vec3f& color);
+  /// What was observed is never changed by what is invented.
+  bool may_speak_of(const Point& point) const {
+    return origin_ == Origin::observed || static_cast<Origin>(point.origin) == Origin::outpainted;
+  }
   float depth_at(float u, float v, float nearest) const;
   void draw(float u, float v, float z, float half);
   std::vector<const Point*> points_beside(const Mask& candidates, Mask* beside) const;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <future>
 #include <string>
+#include <system_error>
 
 #include "libps/core/error.h"
 
@@ -26,6 +27,7 @@ void accumulate(AddReport* sum, const AddReport& one) {
 
 Cloud fuse(const ViewSource& source, const FuseOptions& options, FuseReport* report,
            const std::function<bool(std::size_t, std::size_t)>& progress) {
+  if (source.count > 0 && !source.load) throw Error("fuse", "the source cannot load", "a load()");
   if (source.count > UINT16_MAX + std::size_t{1}) {
     throw Error("fuse", std::to_string(source.count) + " views", "at most 65536");
   }
@@ -36,7 +38,11 @@ Cloud fuse(const ViewSource& source, const FuseOptions& options, FuseReport* rep
   std::future<View> next;
   // The next view is loaded while this one is added.
   const auto start_loading = [&](std::size_t i) {
-    if (i < source.count) next = std::async(std::launch::async, source.load, i);
+    try {
+      if (i < source.count) next = std::async(std::launch::async, source.load, i);
+    } catch (const std::system_error& error) {
+      throw Error("fuse", std::string("no thread to load views: ") + error.what());
+    }
   };
   start_loading(0);
   for (std::size_t i = 0; i < source.count; ++i) {

@@ -13,7 +13,8 @@ namespace ps {
 /// @brief Where fuse() gets its views from, one at a time, so that memory holds few of them.
 struct ViewSource {
   std::size_t count = 0;
-  /// Loads view i. Called from one background thread, in order, at most once for each i.
+  /// Loads view i. Called in order, once for each i, never twice at a time, but on another thread
+  /// than fuse() runs on and while that adds a view or reports progress.
   std::function<View(std::size_t)> load;
 };
 
@@ -32,10 +33,13 @@ struct FuseReport {
   double add_seconds = 0;
 };
 
-/// @brief Fuses posed RGB-D views into one deduplicated cloud (issue "Geometry", DESIGN.md).
-/// @param progress  called after each view with (done, count); return false to stop: ps::Error then
-/// Point.view is the index of the view in the source. Errors of load() and unsound views are
-/// thrown.
+/// @brief Fuses posed RGB-D views into one deduplicated cloud with a SceneCloud: world frame of the
+/// poses, metres; Point.view is the index of the view in the source (averages after Keller et al.,
+/// 3DV 2013). The order of the views matters to the bytes, not to the surface.
+/// @param report  filled, if given
+/// @param progress  called after each view with (done, count); returning false stops with a
+/// ps::Error Throws ps::Error for more than 65536 views and unsound ones; errors of load() are
+/// passed on.
 Cloud fuse(const ViewSource& source, const FuseOptions& options = {}, FuseReport* report = nullptr,
            const std::function<bool(std::size_t, std::size_t)>& progress = {});
 

@@ -165,6 +165,22 @@ TEST(SceneCloud, what_was_observed_is_never_changed_by_what_is_outpainted) {
   EXPECT_GE(scene.add(observed, 2).replaced, report.added * 9 / 10);
 }
 
+TEST(SceneCloud, what_is_outpainted_does_not_contradict_what_was_observed) {
+  SceneCloud scene;
+  scene.add(plane_at(1.5f, {0.5f, 0.5f, 0.5f}), 0);
+  for (int i = 1; i < 4; ++i) scene.add(plane_at(3, {1, 1, 1}), i, Origin::outpainted);
+  EXPECT_EQ(scene.remove_contradicted(), 0u);
+}
+
+TEST(SceneCloud, depths_of_nothing_are_no_points) {
+  View view = plane_at(2, {0.5f, 0.5f, 0.5f});
+  view.depth.row(0) = 1e-12f;
+  view.depth.row(1) = std::numeric_limits<float>::denorm_min();
+  SceneCloud scene;
+  EXPECT_EQ(scene.add(view, 0).added, view.depth.total() - 2 * view.depth.cols);
+  EXPECT_EQ(scene.cloud().size(), scene.size());
+}
+
 TEST(SceneCloud, only_chosen_pixels_are_added) {
   SceneCloud scene;
   Mask pixels(kCamera.height, kCamera.width, std::uint8_t{0});

@@ -187,6 +187,16 @@ TEST(Splat, coincident_points_are_one_surface) {
   EXPECT_EQ(out.first_depth(4, 4), 2);
 }
 
+TEST(Splat, unsound_cameras_are_refused) {
+  Pose bad = Pose::Identity();
+  bad.translation().x() = std::nan("");
+  EXPECT_THROW(splat(Cloud(), {8, 8, 10, 10, 4, 4}, bad), Error);
+  bad = Pose::Identity();
+  bad.linear() *= 2;
+  EXPECT_THROW(splat(Cloud(), {8, 8, 10, 10, 4, 4}, bad), Error);
+  EXPECT_THROW(splat(Cloud(), {65536, 65536, 10, 10, 4, 4}, Pose::Identity()), Error);
+}
+
 TEST(Splat, unsound_options_are_refused) {
   const auto with = [](auto change) {
     SplatOptions options;

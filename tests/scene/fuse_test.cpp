@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
+#include <cstdlib>
 
 #include "libps/core/error.h"
 #include "libps/core/parallel.h"
@@ -146,6 +146,8 @@ TEST(Fuse, errors_of_a_source_are_passed_on_and_stopping_is_an_error) {
   const auto stop = [](std::size_t done, std::size_t) { return done < 2; };
   EXPECT_THROW(fuse(box_world_source(box_world_walk(4)), {}, nullptr, stop), Error);
   EXPECT_TRUE(fuse(ViewSource{}).empty());
+  EXPECT_THROW(fuse(ViewSource{3, {}}), Error);
+  EXPECT_THROW(fuse(ViewSource{65537, [](std::size_t) -> View { std::abort(); }}), Error);
 }
 
 }  // namespace
