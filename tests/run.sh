@@ -26,6 +26,7 @@ sanitized() {
   readers=("${readers[@]##*/}")
   build asan
   suite "address, undefined" asan
+  export TSAN_OPTIONS=suppressions=$root/tests/tsan.supp
   build tsan core_test geometry_test scene_test
   suite threads tsan -E '_NOT_BUILT|^Apps|^Install'
   build fuzz "${readers[@]%.cpp}"
