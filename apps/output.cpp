@@ -37,6 +37,29 @@ std::string series_of(const fs::path& file) {
   return std::string(name.begin(), first) + '#' + std::string(last, name.end());
 }
 
+/// Runs `task`; failures of the file system become ps::Error, naming `path`.
+template <class Task>
+auto on_files(const fs::path& path, Task task) try {
+  return task();
+} catch (const fs::filesystem_error& error) {
+  const fs::path& culprit = error.path1().empty() ? path : error.path1();
+  throw Error(culprit.string(), error.code().message());
+}
+
+/// Throws ps::Error where merge() would meet a file in place of a folder or the other way round, so
+/// that nothing is moved then.
+void check_merge(const fs::path& from, const fs::path& to) {
+  for (const auto& entry : fs::directory_iterator(from)) {
+    const fs::path place = to / entry.path().filename();
+    if (!fs::exists(place)) continue;
+    if (entry.is_directory() != fs::is_directory(place)) {
+      throw Error(place.string(), entry.is_directory() ? "is a file" : "is a folder",
+                  entry.is_directory() ? "a folder" : "a file");
+    }
+    if (entry.is_directory()) check_merge(entry.path(), place);
+  }
+}
+
 void merge(const fs::path& from, const fs::path& to) {
   std::set<std::string> series;
   for (const auto& entry : fs::directory_iterator(from)) series.insert(series_of(entry.path()));
@@ -60,17 +83,20 @@ void merge(const fs::path& from, const fs::path& to) {
 OutputFolder::OutputFolder(const fs::path& target) : target_(target) {
   if (!target_.has_filename()) target_ = target_.parent_path();  // OUT/ is OUT
   if (target_.empty()) throw Error("output", "the folder's name is empty");
-  if (fs::exists(target_) && !fs::is_directory(target_)) {
-    throw Error(target_.string(), "is a file", "a folder, or a path where nothing is yet");
-  }
-  const fs::path whole = fs::absolute(target_).lexically_normal();
-  target_ = whole.has_filename() ? whole : whole.parent_path();
+  on_files(target_, [this] {
+    if (fs::exists(target_) && !fs::is_directory(target_)) {
+      throw Error(target_.string(), "is a file", "a folder, or a path where nothing is yet");
+    }
+    const fs::path whole = fs::absolute(target_).lexically_normal();
+    target_ = whole.has_filename() ? whole : whole.parent_path();
+  });
   check_parent(target_);
   partial_ = target_;
   partial_ += ".partial-" + std::to_string(getpid());
   std::error_code failure;
-  fs::create_directory(partial_, failure);
+  const bool made = fs::create_directory(partial_, failure);
   if (failure) throw Error(partial_.string(), failure.message());
+  if (!made) throw Error(partial_.string(), "is there already, of a run that was ended; remove it");
 }
 
 OutputFolder::~OutputFolder() {
@@ -80,19 +106,20 @@ OutputFolder::~OutputFolder() {
 
 fs::path OutputFolder::file(const std::string& name) {
   const fs::path path = partial_ / name;
-  fs::create_directories(path.parent_path());
+  on_files(path, [&] { fs::create_directories(path.parent_path()); });
   return path;
 }
 
-void OutputFolder::commit() try {
-  if (fs::is_directory(target_)) {
-    merge(partial_, target_);
-    fs::remove_all(partial_);
-  } else {
-    fs::rename(partial_, target_);
-  }
-} catch (const fs::filesystem_error& error) {
-  throw Error(target_.string(), error.code().message());
+void OutputFolder::commit() {
+  on_files(target_, [this] {
+    if (fs::is_directory(target_)) {
+      check_merge(partial_, target_);
+      merge(partial_, target_);
+      fs::remove_all(partial_);
+    } else {
+      fs::rename(partial_, target_);
+    }
+  });
 }
 
 void check_output_file(const fs::path& path, const std::vector<std::string>& extensions) {
@@ -105,7 +132,8 @@ void check_output_file(const fs::path& path, const std::vector<std::string>& ext
     throw Error(path.string(), "is no kind of file that can be written here",
                 "a name ending in " + choices);
   }
-  if (fs::is_directory(path)) throw Error(path.string(), "is a folder", "a file");
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) throw Error(path.string(), "is a folder", "a file");
   check_parent(path);
 }
 

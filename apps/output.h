@@ -12,7 +12,7 @@ namespace ps::apps {
 /// Everything is written into `TARGET.partial-PID` beside it. commit() renames that to the target,
 /// or, when the target is a folder already, moves its files over one by one: files of the same name
 /// are replaced, a numbered file (frame_00012.png) of an earlier, longer run is removed, and all
-/// others stay.
+/// others stay. It first checks that no file would have to replace a folder or a folder a file.
 class OutputFolder {
  public:
   /// Throws ps::Error when the target is a file, or when its parent is missing or cannot be
@@ -24,7 +24,7 @@ class OutputFolder {
 
   /// Where to write a file of this relative name; makes its folder.
   std::filesystem::path file(const std::string& name);
-  void commit();
+  void commit();  ///< throws ps::Error
 
  private:
   std::filesystem::path target_;

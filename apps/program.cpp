@@ -45,8 +45,8 @@ int report_usage(const CLI::App& program, const CLI::ParseError& error) {
   return 2;
 }
 
-int fail(const std::string& message) noexcept {
-  std::fprintf(stderr, "pixelsynth: %s\n", message.c_str());
+int fail(const char* message) noexcept {
+  std::fprintf(stderr, "pixelsynth: %s\n", message);
   return 1;
 }
 
@@ -105,9 +105,9 @@ int report_failure() noexcept try { throw; } catch (const Interrupted&) {
   return fail("out of memory; try fewer or smaller views, or a smaller --size");
 } catch (const cv::Exception& error) {
   if (error.code == cv::Error::StsNoMem) return fail("out of memory; try a smaller --size");
-  return fail("OpenCV: " + one_line(error.err));
+  return fail(("OpenCV: " + one_line(error.err)).c_str());
 } catch (const std::exception& error) {
-  return fail(one_line(error.what()));
+  return fail(one_line(error.what()).c_str());
 } catch (...) {
   return fail("unknown failure");
 }

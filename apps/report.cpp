@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "io/atomic_file.h"
+#include "libps/core/error.h"
 #include "libps/core/parallel.h"
 
 namespace ps::apps {
@@ -84,6 +85,9 @@ void print_report(const Context& context, const Json& report) {
   if (!context.json) return;
   const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace);
   std::printf("%s\n", text.c_str());
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    throw Error("--json", "the report cannot be written to stdout");
+  }
 }
 
 double peak_memory_mib() {

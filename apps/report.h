@@ -28,7 +28,7 @@ Json summary_of(const Cloud& cloud);
 /// @brief Writes indented JSON; the file appears whole or not at all. Throws ps::Error.
 void write_json(const std::filesystem::path& path, const Json& json);
 
-/// @brief Prints a report on stdout if the user asked for it.
+/// @brief Prints a report on stdout if the user asked for it. Throws ps::Error when that fails.
 void print_report(const Context& context, const Json& report);
 
 /// @return the most memory this process has held so far, MiB

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <atomic>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <system_error>
 
 #include "apps/frame_list.h"
 #include "apps/interrupt.h"
@@ -28,6 +30,7 @@ struct FuseArguments {
   FuseOptions fuse;
   bool no_average = false;
   bool keep_contradicted = false;
+  bool compress = false;
 };
 
 void add_input_options(CLI::App& verb, FuseArguments& a) {
@@ -119,18 +122,35 @@ std::vector<Pose> world_from_cams(const FrameList& frames) {
   return poses;
 }
 
-/// The cloud, and beside it how it was made and where from.
+constexpr const char* kBeside[] = {"settings.json", "report.json", "trajectory.txt",
+                                   "intrinsics.json", "held-out.txt"};
+
+void check_outputs(const std::string& output) {
+  check_output_file(output, {".ply", ".pcd"});
+  for (const char* name : kBeside) check_output_file(beside(output, name), {});
+}
+
+/// The poses of an earlier run, which held frames out, would be taken for this one's.
+void remove_stale(const std::filesystem::path& path) {
+  std::error_code failure;
+  std::filesystem::remove(path, failure);
+  if (failure) throw Error(path.string(), "cannot be removed: " + failure.message());
+}
+
+/// How the cloud was made and where from, and last the cloud: where it is, all is.
 void write_all(const FuseArguments& a, const Cloud& cloud, const FrameList& frames,
                const Json& settings, const Json& report) {
   const std::filesystem::path output(a.output);
-  write_cloud(output, cloud, up_axis(world_from_cams(frames)));
   write_json(beside(output, "settings.json"), settings);
   write_json(beside(output, "report.json"), report);
   write_trajectory(beside(output, "trajectory.txt"), poses_of(frames.used));
   write_intrinsics(beside(output, "intrinsics.json"), frames.used.front().folder->intrinsics);
-  if (!frames.held_out.empty()) {
+  if (frames.held_out.empty()) {
+    remove_stale(beside(output, "held-out.txt"));
+  } else {
     write_trajectory(beside(output, "held-out.txt"), poses_of(frames.held_out));
   }
+  write_cloud(output, cloud, up_axis(world_from_cams(frames)), a.compress);
 }
 
 Json report_of(const FuseReport& fused, const FrameList& frames, const Cloud& cloud) {
@@ -152,16 +172,24 @@ void run_fuse(const FuseArguments& a, const CLI::App& verb, const Context& conte
   if (!a.frames.empty()) parse_frames(a.frames, resolved.choice);
   resolved.fuse.cloud.average = !a.no_average;
   resolved.fuse.remove_contradicted = !a.keep_contradicted;
-  check_output_file(a.output, {".ply", ".pcd"});
+  check_outputs(a.output);
+  if (a.compress && extension_of(a.output) != ".pcd") {
+    throw CLI::ValidationError("--compress", "a .ply is never compressed; -o FILE.pcd is");
+  }
   note_interrupts();
   const Stopwatch total;
   const std::vector<RgbdFolder> folders = open_folders(a, context);
   const FrameList frames = choose_frames(folders, resolved.choice);
   if (frames.used.empty()) throw Error(a.folders.front(), "no frame is left by --frames");
 
+  std::atomic<std::size_t> scaled_depths{0};  // fuse() loads in the background
   const ViewSource source = {frames.used.size(), [&](std::size_t i) {
                                const ChosenFrame& chosen = frames.used[i];
-                               return load_frame(*chosen.folder, chosen.frame, a.depth_scale);
+                               bool scaled = false;
+                               View view =
+                                   load_frame(*chosen.folder, chosen.frame, a.depth_scale, &scaled);
+                               scaled_depths += scaled ? 1 : 0;
+                               return view;
                              }};
   FuseReport fused;
   Cloud cloud;
@@ -173,6 +201,10 @@ void run_fuse(const FuseArguments& a, const CLI::App& verb, const Context& conte
     });
   }
   throw_if_interrupted();
+  if (scaled_depths > 0) {
+    context.warn(std::to_string(scaled_depths) +
+                 " depth images are of another size than their photos; scaled to the photos' size");
+  }
   Json report = report_of(fused, frames, cloud);
   report["seconds"]["total"] = total.seconds();
   report["peak_memory_mib"] = peak_memory_mib();
@@ -199,6 +231,7 @@ void add_fuse(CLI::App& program, const Context& context) {
                  "Keep points where they were first seen, instead of averaging views");
   verb->add_flag("--keep-contradicted", a->keep_contradicted,
                  "Keep points that other views see through");
+  verb->add_flag("--compress", a->compress, "Compress the .pcd; a .ply is never compressed");
   verb->callback([a, verb, &context] { run_fuse(*a, *verb, context); });
 }
 

@@ -83,7 +83,7 @@ void add_picture_options(CLI::App& verb, RenderArguments& a) {
   verb.add_flag("--depth", a.sink.depth, "Also write depth: 16-bit PNG in millimetres, 0 = none");
   verb.add_option("--fps", a.sink.frames_per_second, "Frames per second of a video")
       ->type_name("N")
-      ->check(in_range(0.1, 1000));
+      ->check(in_range(1, 1000));
 }
 
 bool is_built_in(const std::string& trajectory) {

@@ -4,6 +4,7 @@
 
 #include "apps/cloud_arguments.h"
 #include "apps/display.h"
+#include "apps/interrupt.h"
 #include "apps/output.h"
 #include "apps/program.h"
 #include "apps/report.h"
@@ -58,7 +59,10 @@ ViewerOptions viewer_options(const ViewArguments& a, const Cloud& cloud, const C
 }
 
 void run_view(const ViewArguments& a, const Context& context) {
-  if (!a.screenshot.empty()) check_output_file(a.screenshot, {".png", ".jpg", ".jpeg"});
+  if (!a.screenshot.empty()) {
+    check_output_file(a.screenshot, {".png", ".jpg", ".jpeg"});
+    note_interrupts();
+  }
   const Cloud cloud = load_cloud(a.cloud);
   const ViewerOptions options = viewer_options(a, cloud, context);
   if (a.screenshot.empty()) {
@@ -67,7 +71,9 @@ void run_view(const ViewArguments& a, const Context& context) {
     show(cloud, options);
   } else {
     const Display display(Display::Need::picture);
-    write_image(a.screenshot, snapshot(cloud, options));
+    const Image picture = snapshot(cloud, options);
+    throw_if_interrupted();
+    write_image(a.screenshot, picture);
     context.say(a.screenshot + ": " + std::to_string(cloud.size()) + " points");
   }
   print_report(context, summary_of(cloud));

@@ -10,6 +10,7 @@
 #include "io/atomic_file.h"
 #include "io/bytes.h"
 #include "io/cloud_fields.h"
+#include "io/cloud_file.h"
 #include "io/text.h"
 
 namespace ps {
@@ -237,11 +238,9 @@ std::string compressed_block(const Cloud& cloud, const std::string& where) {
   return block;
 }
 
-std::string header_text(std::size_t points, bool compressed) {
+std::string header_text(std::size_t points, bool compressed, const std::string& up) {
   const std::string count = std::to_string(points);
-  return "# .PCD v0.7 - Point Cloud Data file format\n"
-         "# pixelsynth " PIXELSYNTH_VERSION
-         "; metres; x right, y down, z forward; origin 0 observed, 1 outpainted\n"
+  return "# .PCD v0.7 - Point Cloud Data file format\n" + cloud_comments(up, "# ", "") +
          "VERSION 0.7\nFIELDS x y z rgb footprint view origin\nSIZE 4 4 4 4 4 2 1\n"
          "TYPE F F F F F U U\nCOUNT 1 1 1 1 1 1 1\nWIDTH " +
          count + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + count + "\nDATA " +
@@ -266,13 +265,14 @@ Cloud read_pcd(const std::filesystem::path& path) {
   return guarded(path.string(), [&] { return parse_pcd(FileBytes(path).view(), path.string()); });
 }
 
-void write_pcd(const std::filesystem::path& path, const Cloud& cloud, bool compressed) {
+void write_pcd(const std::filesystem::path& path, const Cloud& cloud, bool compressed,
+               const std::string& up) {
   guarded(path.string(), [&] {
     check_finite(cloud, path.string());
     const std::string data =
         compressed ? compressed_block(cloud, path.string()) : packed(cloud, false);
     AtomicFile file(path);
-    file.write(header_text(cloud.size(), compressed));
+    file.write(header_text(cloud.size(), compressed, up));
     file.write(data);
     file.commit();
   });

@@ -20,6 +20,8 @@ Cloud parse_pcd(std::string_view bytes, const std::string& name);
 /// @brief Writes PCD 0.7, binary or binary_compressed. The file appears whole or not at all.
 /// Throws ps::Error when a coordinate is not finite, or a compressed block would not fit PCL's
 /// 32-bit sizes (186 million points).
-void write_pcd(const std::filesystem::path& path, const Cloud& cloud, bool compressed = false);
+/// @param up  the world's axis that points up, which the header notes; empty = not known
+void write_pcd(const std::filesystem::path& path, const Cloud& cloud, bool compressed = false,
+               const std::string& up = "");
 
 }  // namespace ps

@@ -137,13 +137,15 @@ RgbdFolder open_rgbd_folder(const fs::path& path, std::size_t* skipped) {
   });
 }
 
-View load_frame(const RgbdFolder& folder, const RgbdFrame& frame, double depth_scale) {
+View load_frame(const RgbdFolder& folder, const RgbdFrame& frame, double depth_scale,
+                bool* scaled) {
   return guarded(frame.color.string(), [&] {
     View view;
     view.world_from_cam = frame.world_from_cam;
     view.color = read_photo(frame.color).color;
     view.depth = read_depth(frame.depth, depth_scale);
     const cv::Size size = view.color.size();
+    if (scaled != nullptr) *scaled = view.depth.size() != size;
     if (view.depth.size() != size) {
       if (!same_aspect(view.depth.size(), size)) {
         throw Error(frame.depth.string(),

@@ -33,6 +33,8 @@ RgbdFolder open_rgbd_folder(const std::filesystem::path& path, std::size_t* skip
 
 /// @brief Loads one frame; depth of another size but the same aspect is resized (nearest), of
 /// another aspect is an Error. Depth in the file is metres times depth_scale.
-View load_frame(const RgbdFolder& folder, const RgbdFrame& frame, double depth_scale = 1000);
+/// @param scaled  when given, told whether the depth was resized
+View load_frame(const RgbdFolder& folder, const RgbdFrame& frame, double depth_scale = 1000,
+                bool* scaled = nullptr);
 
 }  // namespace ps

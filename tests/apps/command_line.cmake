@@ -16,6 +16,7 @@ app_test(values_out_of_range_are_wrong_usage [=[
   fails 2 'radius' render $S/mixed.ply -o a.png --radius 0
   fails 2 'radius' render $S/mixed.ply -o a.png --radius nan
   fails 2 'depth-scale' fuse $S/walk -o a.ply --depth-scale 0
+  fails 2 'fps' render $S/mixed.ply -o a.mp4 --fps 0.5
   fails 2 'every' fuse $S/walk -o a.ply --every 0
   fails 2 'fov' scene $S/photo.png --depth $S/depth.png --no-outpaint -o a --fov 180
   fails 2 'threads' --threads -1 fuse $S/walk -o a.ply]=])
@@ -40,6 +41,12 @@ app_test(without_a_terminal_there_is_no_bar [=[
 app_test(json_on_stdout_is_the_report [=[
   works -q --json fuse $S/walk -o a.ply
   cmp "$work/out" a.report.json]=])
+app_test(a_report_that_cannot_be_printed_is_a_failure [=[
+  got=0
+  $program -q --json fuse $S/walk -o a.ply >/dev/full 2>"$work/err" || got=$?
+  is $got -eq 1
+  is "$(wc -l <"$work/err")" -eq 1
+  says 'json.*stdout']=])
 app_test(missing_files_are_named [=[
   fails 1 'absent' fuse absent -o a.ply
   fails 1 'absent.ply' render absent.ply -o a.png
@@ -53,7 +60,11 @@ app_test(outputs_that_cannot_be_are_refused_before_the_work [=[
   fails 1 'no_folder' render $S/mixed.ply -o no_folder/a.mp4
   fails 1 'mp4 or .png' render $S/mixed.ply -o a.avi
   fails 1 'no_folder' scene $S/photo.png --depth $S/depth.png --no-outpaint -o no_folder/a
-  touch file
+  mkdir b.report.json
+  fails 1 'b.report.json: is a folder' fuse $S/walk -o b.ply
+  mkdir -p s/preview.png
+  touch s/views file
+  fails 1 's/.* is a f' scene $S/photo.png --depth $S/depth.png --no-outpaint -o s
   fails 1 'is a file' scene $S/photo.png --depth $S/depth.png --no-outpaint -o file]=])
 app_test(bad_photos_fail_with_one_line [=[
   for f in nothing.jpg truncated.jpg truncated.png text.png; do

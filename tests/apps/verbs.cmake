@@ -10,7 +10,19 @@ app_test(fuse_writes_cloud_report_settings_poses_and_lens [=[
 app_test(fuse_writes_pcd [=[
   works fuse $S/walk -o a.pcd
   writes a.pcd
-  head -n 1 a.pcd | grep -q PCD]=])
+  head -n 1 a.pcd | grep -q PCD
+  works fuse $S/walk -o b.pcd --compress
+  grep -aqx 'DATA binary_compressed' b.pcd
+  works --json render b.pcd -o r.png
+  is "$(json points "$work/out")" -eq "$(json points b.report.json)"
+  is "$(json points b.report.json)" -eq "$(json points a.report.json)"
+  fails 2 'compress.*pcd' fuse $S/walk -o c.ply --compress]=])
+app_test(fuse_scales_depth_of_another_size_with_one_warning [=[
+  cp -r $S/walk w
+  for f in w/depth/*; do cp $S/half.png $f; done
+  works fuse w -o a.ply
+  is "$(grep -c warning "$work/err")" -eq 1
+  says 'warning: 7 depth images.*scaled']=])
 app_test(fuse_does_not_depend_on_threads [=[
   works --threads 1 fuse $S/walk -o a.ply
   works --threads 3 fuse $S/walk -o b.ply
@@ -36,7 +48,9 @@ app_test(fuse_holds_frames_out [=[
   works fuse $S/walk -o a.ply --hold-out 3
   grep -v '#' a.held-out.txt | cut -d' ' -f1 | xargs | grep -qx '1 4'
   is "$(json views a.report.json)" -eq 5
-  is "$(json held_out a.report.json)" -eq 2]=])
+  is "$(json held_out a.report.json)" -eq 2
+  works fuse $S/walk -o a.ply
+  is ! -e a.held-out.txt]=])
 app_test(fuse_with_a_wider_spacing_keeps_fewer_points [=[
   works fuse $S/walk -o a.ply
   works fuse $S/walk -o b.ply --spacing 0.1

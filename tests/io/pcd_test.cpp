@@ -89,6 +89,20 @@ TEST(Pcd, every_truncation_is_an_error) {
   }
 }
 
+TEST(Pcd, says_the_same_as_ply) {
+  const Folder folder;
+  for (const std::string up : {"", "y", "-y"}) {
+    for (const bool compressed : {false, true}) {
+      write_cloud(folder / "a.pcd", random_cloud(20, 1), up, compressed);
+      write_cloud(folder / "a.ply", random_cloud(20, 1), up);
+      const std::string pcd = bytes_of(folder / "a.pcd"), ply = bytes_of(folder / "a.ply");
+      EXPECT_TRUE(has(pcd, cloud_comments(up, "# ", "") + "VERSION"));
+      EXPECT_TRUE(has(ply, cloud_comments(up, "comment ", "scalar_") + "element"));
+      EXPECT_TRUE(has(pcd, compressed ? "DATA binary_compressed\n" : "DATA binary\n"));
+    }
+  }
+}
+
 TEST(Pcd, headers_that_promise_too_much_are_refused_before_memory_is_taken) {
   EXPECT_TRUE(has(message(xyz(1000000000, "binary") + "abc"), "promises 1000000000"));
   EXPECT_TRUE(has(message(xyz(1000000000, "ascii") + "1 2 3\n"), "promises 1000000000"));

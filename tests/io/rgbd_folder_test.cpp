@@ -71,10 +71,15 @@ TEST(RgbdFolder, depth_of_another_size_is_resized_to_the_photo) {
   }
   write_depth(frames / "depth/1.png", small);
   RgbdFolder folder = open_rgbd_folder(frames.path());
-  const View view = load_frame(folder, folder.frames[0]);
+  bool scaled = false;
+  const View view = load_frame(folder, folder.frames[0], 1000, &scaled);
+  EXPECT_TRUE(scaled);
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < 12; ++x) EXPECT_EQ(view.depth(y, x), small(y / 2, x / 2));
   }
+  write_depth(frames / "depth/1.png", Depth(8, 12, 1.f));
+  load_frame(folder, folder.frames[0], 1000, &scaled);
+  EXPECT_FALSE(scaled);
   write_depth(frames / "depth/1.png", Depth(8, 8, 1.f));
   EXPECT_TRUE(
       has(error_of([&] { load_frame(folder, folder.frames[0]); }), "depth is 8x8, the photo 12x8"));
