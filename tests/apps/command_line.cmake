@@ -64,7 +64,7 @@ app_test(outputs_that_cannot_be_are_refused_before_the_work [=[
   fails 1 'b.report.json: is a folder' fuse $S/walk -o b.ply
   mkdir -p s/preview.png
   touch s/views file
-  fails 1 's/.* is a f' scene $S/photo.png --depth $S/depth.png --no-outpaint -o s
+  fails 1 's/.* is a f' -q scene $S/photo.png --depth $S/depth.png --no-outpaint -o s
   fails 1 'is a file' scene $S/photo.png --depth $S/depth.png --no-outpaint -o file]=])
 app_test(bad_photos_fail_with_one_line [=[
   for f in nothing.jpg truncated.jpg truncated.png text.png; do
