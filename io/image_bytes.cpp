@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <climits>
+#include <cstdint>
+#include <cstdlib>
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
+#include <utility>
 
 #include "io/atomic_file.h"
 #include "io/bytes.h"
@@ -110,6 +114,10 @@ std::string_view check_png(std::string_view bytes, const std::string& name) {
 std::string_view check_webp(std::string_view bytes, const std::string& name) {
   if (load<std::uint32_t>(bytes.data() + 4) > bytes.size() - 8) truncated(name, "WebP");
   std::size_t at = 12;
+  if (bytes.size() >= 30 && bytes.substr(at, 4) == "VP8X") {  // the other kinds hold 14 bits a side
+    check_size((load<std::uint32_t>(&bytes[24]) & 0xffffff) + 1,
+               load<std::uint32_t>(&bytes[26]) / 256 + 1, 0, bytes, name);
+  }
   while (at + 8 <= bytes.size()) {
     const std::size_t length = load<std::uint32_t>(bytes.data() + at + 4);
     if (length > bytes.size() - at - 8) break;
@@ -120,6 +128,84 @@ std::string_view check_webp(std::string_view bytes, const std::string& name) {
     at += 8 + length + length % 2;
   }
   return {};
+}
+
+using Size = std::pair<std::uint64_t, std::uint64_t>;
+
+std::uint64_t magnitude(std::int32_t value) {
+  return static_cast<std::uint64_t>(std::abs(static_cast<std::int64_t>(value)));
+}
+
+std::optional<Size> size_of_bmp(std::string_view bytes) {
+  if (bytes.size() < 26) return {};
+  const char* at = bytes.data() + 18;
+  if (load<std::uint32_t>(bytes.data() + 14) == 12) {
+    return Size(load<std::uint16_t>(at), load<std::uint16_t>(at + 2));
+  }
+  return Size(magnitude(load<std::int32_t>(at)), magnitude(load<std::int32_t>(at + 4)));
+}
+
+/// Two numbers after the kind; comments may stand before each.
+std::optional<Size> size_of_pnm(std::string_view bytes) {
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  std::uint64_t numbers[2] = {};
+  std::size_t at = 2;
+  for (std::uint64_t& number : numbers) {
+    while (at < bytes.size() && !digit(bytes[at])) {
+      at = bytes[at] == '#' ? bytes.find('\n', at) : at + 1;
+    }
+    if (at >= bytes.size()) return {};
+    for (; at < bytes.size() && digit(bytes[at]); ++at) {
+      number = std::min<std::uint64_t>(number * 10 + (bytes[at] - '0'), UINT32_MAX);
+    }
+  }
+  return Size(numbers[0], numbers[1]);
+}
+
+/// Tags 256 and 257 of the first directory.
+std::optional<Size> size_of_tiff(std::string_view bytes) {
+  const bool swap = bytes[0] == 'M';
+  if (bytes.size() < 8) return {};
+  const std::size_t begin = load<std::uint32_t>(bytes.data() + 4, swap);
+  if (begin + 2 > bytes.size()) return {};
+  const std::size_t entries = load<std::uint16_t>(bytes.data() + begin, swap);
+  Size size;
+  for (std::size_t i = 0; i < entries; ++i) {
+    const std::size_t offset = begin + 2 + 12 * i;
+    if (offset + 12 > bytes.size()) break;
+    const char* at = bytes.data() + offset;
+    const auto tag = load<std::uint16_t>(at, swap), type = load<std::uint16_t>(at + 2, swap);
+    const std::uint64_t value =
+        type == 3 ? load<std::uint16_t>(at + 8, swap) : load<std::uint32_t>(at + 8, swap);
+    if (tag == 256) size.first = value;
+    if (tag == 257) size.second = value;
+  }
+  if (size.first == 0 || size.second == 0) return {};
+  return size;
+}
+
+/// The attribute dataWindow: first and last column and row.
+std::optional<Size> size_of_exr(std::string_view bytes) {
+  constexpr std::string_view kWindow{"dataWindow\0box2i\0\x10\0\0\0", 21};
+  const std::size_t found = bytes.find(kWindow);
+  if (found == std::string_view::npos || found + kWindow.size() + 16 > bytes.size()) return {};
+  std::int64_t box[4];
+  for (std::size_t i = 0; i < 4; ++i) {
+    box[i] = load<std::int32_t>(bytes.data() + found + kWindow.size() + 4 * i);
+  }
+  if (box[2] < box[0] || box[3] < box[1]) return {};
+  return Size(box[2] - box[0] + 1, box[3] - box[1] + 1);
+}
+
+/// @return what the header says; empty when it is unsound, which the decoder will say
+std::optional<Size> size_of_others(std::string_view bytes) {
+  if (starts_with(bytes, "BM")) return size_of_bmp(bytes);
+  if (starts_with(bytes, {"II*\0", 4}) || starts_with(bytes, {"MM\0*", 4})) {
+    return size_of_tiff(bytes);
+  }
+  if (starts_with(bytes, "\x76\x2f\x31\x01")) return size_of_exr(bytes);
+  const bool pnm = bytes.size() > 2 && bytes[0] == 'P' && bytes[1] >= '1' && bytes[1] <= '6';
+  return pnm ? size_of_pnm(bytes) : std::nullopt;
 }
 
 /// The kinds that are decoded. OpenCV knows more, and by some of them damaged files end the program
@@ -142,6 +228,9 @@ std::string_view check_image_bytes(std::string_view bytes, const std::string& na
   if (starts_with(bytes, "RIFF") && bytes.size() >= 12 && bytes.substr(8, 4) == "WEBP") {
     return check_webp(bytes, name);
   }
+  if (const auto size = size_of_others(bytes)) {
+    check_size(size->first, size->second, 0, bytes, name);
+  }
   return {};
 }
 
@@ -157,6 +246,8 @@ cv::Mat decode_image(std::string_view bytes, int flags, const std::string& name)
     throw Error(name, "cannot be decoded: damaged, truncated, or of an unusual kind",
                 "a whole image");
   }
+  check_size(static_cast<std::uint64_t>(image.cols), static_cast<std::uint64_t>(image.rows), 0,
+             bytes, name);
   return image;
 }
 

@@ -11,9 +11,11 @@
 namespace ps {
 
 /// @brief Walks a JPEG's segments, a PNG's chunks or a WebP's, for what decoders let pass: an end
-/// that is missing, a size that so short a file cannot fill. Other kinds are left to their decoder.
+/// that is missing, a size that so short a file cannot fill. Of BMP, PNM, TIFF and EXR it reads the
+/// size alone. (OpenCV's own limit, OPENCV_IO_MAX_IMAGE_PIXELS, is read before we could set it.)
 /// @return the EXIF block, from its TIFF header on; empty when there is none
-/// Throws ps::Error, naming `name`, when the file is truncated or its size is not believable.
+/// Throws ps::Error, naming `name`, when the file is truncated, its size is not believable, or it
+/// has more than 2^28 pixels.
 std::string_view check_image_bytes(std::string_view bytes, const std::string& name);
 
 /// @brief cv::imdecode after check_image_bytes(); throws ps::Error where OpenCV fails.

@@ -4,6 +4,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "io/image_bytes.h"
+#include "io/image_bytes.h"
 #include "libps/geometry/camera.h"
 #include "tests/io/support.h"
 
@@ -210,6 +212,32 @@ TEST(Photo, sizes_that_so_few_bytes_cannot_hold_are_refused) {
   EXPECT_TRUE(has(error_of([&] { parse_photo(jpeg, "a.jpg"); }), "cannot hold 10000x10000"));
   jpeg.replace(frame + 5, 4, "\xFF\xDC\xFF\xDC");
   EXPECT_TRUE(has(error_of([&] { parse_photo(jpeg, "a.jpg"); }), "at most 268 million"));
+}
+
+TEST(Photo, more_than_2_to_the_28_pixels_are_refused_by_the_header) {
+  const auto refused = [](const std::string& bytes) {
+    return has(error_of([&] { check_image_bytes(bytes, "a"); }), "the image is 20000x20000; exp");
+  };
+  const cv::Mat3b small(8, 8, cv::Vec3b(1, 2, 3));
+  std::string bmp = encoded(".bmp", small);
+  bmp.replace(18, 8, raw(std::int32_t{20000}) + raw(std::int32_t{-20000}));
+  EXPECT_TRUE(refused(bmp));
+  EXPECT_TRUE(refused("P6 # 1 2\n20000\n# 3\n20000 255\n"));
+  for (const bool big_endian : {false, true}) {
+    const auto entry = [&](std::uint16_t tag) {
+      return raw(tag, big_endian) + raw(std::uint16_t{4}, big_endian) +
+             raw(std::uint32_t{1}, big_endian) + raw(std::uint32_t{20000}, big_endian);
+    };
+    EXPECT_TRUE(refused((big_endian ? std::string("MM\0*", 4) : std::string("II*\0", 4)) +
+                        raw(std::uint32_t{8}, big_endian) + raw(std::uint16_t{2}, big_endian) +
+                        entry(256) + entry(257)));
+  }
+  EXPECT_TRUE(refused("\x76\x2f\x31\x01" + std::string("\2\0\0\0", 4) +
+                      std::string("dataWindow\0box2i\0\x10\0\0\0", 21) + raw(-5) + raw(-5) +
+                      raw(19994) + raw(19994)));
+  EXPECT_TRUE(refused("RIFF" + raw(std::uint32_t{22}) + "WEBPVP8X" + raw(std::uint32_t{10}) +
+                      raw(std::uint32_t{0}) + "\x1f\x4e" + std::string(1, '\0') + "\x1f\x4e" +
+                      std::string(1, '\0')));
 }
 
 TEST(Photo, other_files_are_errors) {
