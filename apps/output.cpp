@@ -81,6 +81,11 @@ void merge(const fs::path& from, const fs::path& to) {
 }  // namespace
 
 OutputFolder::OutputFolder(const fs::path& target) : target_(target) {
+  std::error_code ignored;
+  if (fs::exists(target / "color", ignored) && fs::exists(target / "depth", ignored)) {
+    throw Error(target.string(), "holds RGB-D frames, whose trajectory would be replaced",
+                "another output folder");
+  }
   if (!target_.has_filename()) target_ = target_.parent_path();  // OUT/ is OUT
   if (target_.empty()) throw Error("output", "the folder's name is empty");
   on_files(target_, [this] {
