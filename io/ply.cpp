@@ -10,6 +10,7 @@
 #include "io/atomic_file.h"
 #include "io/bytes.h"
 #include "io/cloud_fields.h"
+#include "io/cloud_file.h"
 #include "io/text.h"
 #include "libps/core/parallel.h"
 
@@ -235,16 +236,8 @@ void pack(const Point& point, char* to) {
 }
 
 std::string header_text(std::size_t points, const std::string& up) {
-  const std::string axes = up.empty() ? "those of the poses" : "of the world, " + up + " is up";
-  return "ply\nformat binary_little_endian 1.0\n"
-         "comment pixelsynth " PIXELSYNTH_VERSION "\ncomment units metres\ncomment axes " +
-         axes +
-         "; cameras x right, y down, z forward\n"
-         "comment scalar_footprint metres that one pixel covered\n"
-         "comment scalar_view number of the view that added the point\n"
-         "comment scalar_origin 0 observed, 1 outpainted\n"
-         "element vertex " +
-         std::to_string(points) +
+  return "ply\nformat binary_little_endian 1.0\n" + cloud_comments(up, "comment ", "scalar_") +
+         "element vertex " + std::to_string(points) +
          "\nproperty float x\nproperty float y\nproperty float z\n"
          "property uchar red\nproperty uchar green\nproperty uchar blue\n"
          "property float scalar_footprint\nproperty ushort scalar_view\n"
