@@ -21,8 +21,8 @@ using splat_kernel::TilePoint;
 
 constexpr int kLargest = 16384;  ///< pixels on a side
 constexpr int kBatch = 32;
-/// What is behind a transmittance this small cannot change a rounded 8-bit colour.
-constexpr float kEnough = 1.0f / 1024;
+/// What is behind a transmittance this small changes an 8-bit colour by less than half a step.
+constexpr float kEnough = 1.0f / 512;
 
 splat_kernel::Blend pick_blend() {
 #ifdef PS_X86_KERNELS

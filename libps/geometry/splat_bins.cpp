@@ -27,7 +27,7 @@ std::uint32_t bits_of(float x) {
 
 /// The tiles a point may hit: columns [c0, c1], rows [r0, r1]; empty when c0 > c1.
 struct TileRange {
-  int c0 = 0, c1 = -1, r0 = 0, r1 = -1;
+  std::int16_t c0 = 0, c1 = -1, r0 = 0, r1 = -1;
 };
 
 class TileRanges {
@@ -47,8 +47,9 @@ class TileRanges {
   }
 
  private:
-  static int tile(float at, int size) {
-    return static_cast<int>(std::min(std::max(at, 0.f), static_cast<float>(size - 1))) / kTile;
+  static std::int16_t tile(float at, int size) {
+    const auto pixel = static_cast<int>(std::min(std::max(at, 0.f), static_cast<float>(size - 1)));
+    return static_cast<std::int16_t>(pixel / kTile);
   }
 
   const PlaneArrays& points_;
@@ -96,26 +97,25 @@ TileBins bin_points(const PlaneArrays& points, cv::Size size, float radius) {
   bins.columns = (size.width + kTile - 1) / kTile;
   bins.rows = (size.height + kTile - 1) / kTile;
   const std::size_t tiles = static_cast<std::size_t>(bins.columns) * bins.rows;
-  const TileRanges ranges(points, size, radius);
+  const TileRanges range_of(points, size, radius);
 
   // Few parts, so that counters stay small beside the points; tiles sort their entries themselves.
   const std::size_t parts =
       std::min<std::size_t>({4u * threads(), kMostParts, (count + kChunk - 1) / kChunk});
   const std::size_t part_size = parts ? (count + parts - 1) / parts : 1;
   std::vector<std::vector<std::size_t>> at(parts, std::vector<std::size_t>(tiles, 0));
-  const auto for_each_entry = [&](std::size_t begin, std::size_t end, const auto& visit) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const TileRange range = ranges(i);
-      for (int row = range.r0; row <= range.r1; ++row) {
-        for (int column = range.c0; column <= range.c1; ++column) {
-          visit(static_cast<std::size_t>(row) * bins.columns + column, i);
-        }
-      }
+  std::vector<TileRange> ranges(count);
+  const auto for_each_tile = [&](const TileRange& range, const auto& visit) {
+    for (int row = range.r0; row <= range.r1; ++row) {
+      for (int column = range.c0; column <= range.c1; ++column) visit(row * bins.columns + column);
     }
   };
   parallel_chunks(count, part_size, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::size_t>& counts = at[begin / part_size];
-    for_each_entry(begin, end, [&](std::size_t tile, std::size_t) { ++counts[tile]; });
+    std::size_t* counts = at[begin / part_size].data();
+    for (std::size_t i = begin; i < end; ++i) {
+      ranges[i] = range_of(i);
+      for_each_tile(ranges[i], [&](int tile) { ++counts[tile]; });
+    }
   });
   bins.start.resize(tiles + 1);
   std::size_t total = 0;
@@ -126,10 +126,12 @@ TileBins bin_points(const PlaneArrays& points, cv::Size size, float radius) {
   bins.start[tiles] = total;
   bins.entries.resize(total);
   parallel_chunks(count, part_size, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::size_t>& next = at[begin / part_size];
-    for_each_entry(begin, end, [&](std::size_t tile, std::size_t i) {
-      bins.entries[next[tile]++] = static_cast<std::uint64_t>(bits_of(points.z[i])) << 32 | i;
-    });
+    std::size_t* next = at[begin / part_size].data();
+    std::uint64_t* entries = bins.entries.data();
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint64_t entry = static_cast<std::uint64_t>(bits_of(points.z[i])) << 32 | i;
+      for_each_tile(ranges[i], [&](int tile) { entries[next[tile]++] = entry; });
+    }
   });
   return bins;
 }
@@ -157,8 +159,9 @@ void FrontToBack::spread(const std::uint64_t* begin, const std::uint64_t* end) {
   // Depth's bits grow with depth, so equal steps of them are an ordering into buckets.
   const std::uint64_t buckets = std::min<std::uint64_t>(count / kBucket, 1u << 14);
   const double scale = static_cast<double>(buckets) / static_cast<double>(high - low + 1);
-  const auto bucket_of = [&](std::uint64_t entry) {
-    return static_cast<std::size_t>(static_cast<double>((entry >> 32) - low) * scale);
+  const auto bucket_of = [&](std::uint64_t entry) {  // signed: one instruction each way
+    const auto steps = static_cast<std::int64_t>((entry >> 32) - low);
+    return static_cast<std::int64_t>(static_cast<double>(steps) * scale);
   };
   bucket_end_.assign(buckets + 1, 0);
   for (const std::uint64_t* e = begin; e != end; ++e) ++bucket_end_[bucket_of(*e) + 1];
