@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "libps/nn/packed_matrix.h"
+#include "libps/nn/weights.h"
+
+namespace ps::nn {
+
+/// @brief The codes of a VQ-VAE (SPEC.md 5).
+class Codebook {
+ public:
+  /// @param embed  [channels, codes], as published
+  explicit Codebook(const WeightTensor& embed);
+
+  int size() const { return size_; }
+  int channels() const { return channels_; }
+
+  /// @brief For every pixel the first k that makes |x|^2 - 2 x.e_k + |e_k|^2 least.
+  /// @param codes  in.shape.pixels() values
+  void nearest(const TensorView& in, std::int32_t* codes) const;
+
+  /// @brief The embeddings of codes. Throws ps::Error when a code is not in [0, size()).
+  void embed(const std::int32_t* codes, const TensorView& out) const;
+
+ private:
+  int size_ = 0, channels_ = 0;
+  std::vector<float> vectors_;  ///< [codes][channels]
+  std::vector<float> squares_;  ///< |e_k|^2
+  PackedMatrix matrix_;
+};
+
+}  // namespace ps::nn

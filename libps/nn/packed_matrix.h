@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+#include "libps/nn/activation.h"
+#include "libps/nn/tensor.h"
+
+namespace ps::nn {
+
+/// How weights are kept in memory; sums are always of single precision.
+enum class Storage { f32, bf16 };
+
+/// @brief What happens to a sum before it is stored, for each output channel:
+/// v = sum + bias; v = v * scale + shift; v += residual; v = activation(v). Null = left out.
+/// Vectors have as many values as the output has channels.
+struct Epilogue {
+  const float* bias = nullptr;
+  const float* scale = nullptr;
+  const float* shift = nullptr;
+  const TensorView* residual = nullptr;  ///< of the output's shape; may be the output itself
+  Activation activation = {};
+};
+
+/// @brief A matrix of taps * depth rows and some columns, packed for the machine's vector width.
+///
+/// It multiplies rows that are given as pointers: `depth` floats for each tap. What a convolution
+/// reads outside the image, or what a local mask hides, is a pointer to zeros; so every
+/// convolution of this room is this one product. A sum is taken tap by tap and, within a tap,
+/// from the first channel on, in one chain: it does not depend on how many rows are multiplied at once,
+/// on threads, or on the row's place. After Dukhan, "The Indirect Convolution Algorithm" (2019).
+class PackedMatrix {
+ public:
+  PackedMatrix() = default;
+  /// @param value  (tap, row within the tap, column) -> the matrix's value
+  PackedMatrix(int taps, int depth, int columns,
+               const std::function<float(int tap, int row, int column)>& value,
+               Storage storage = Storage::f32);
+
+  int taps() const { return taps_; }
+  int depth() const { return depth_; }
+  int columns() const { return columns_; }
+  int panels() const;
+  std::size_t bytes() const;
+
+  /// @brief Multiplies up to kRows rows with panels [first, last) of columns.
+  /// @param rows  [taps][kRows] pointers to `depth` floats each; of each tap, the first `count` count
+  /// @param out, residual  `count` pointers to a row's column 0; residual may be null
+  static constexpr int kRows = 6;
+  void multiply(const float* const* rows, int count, float* const* out, const Epilogue& epilogue,
+                const float* const* residual, int first_panel, int last_panel) const;
+
+ private:
+  int taps_ = 0, depth_ = 0, columns_ = 0;
+  int panel_ = 0;  ///< columns of a panel, padded to whole vectors
+  Storage storage_ = Storage::f32;
+  AlignedFloats values_;
+  std::size_t floats_ = 0;
+};
+
+}  // namespace ps::nn
