@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/nn/codebook.h"
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#include "libps/core/error.h"
+#include "libps/nn/pixel_loop.h"
+
+namespace ps::nn {
+
+Codebook::Codebook(const WeightTensor& embed) {
+  const std::size_t dimensions = embed.shape.size();
+  if (dimensions != 2 || embed.elements() == 0 || embed.values.size() != embed.elements()) {
+    throw Error("codebook", "embeddings of the shape " + to_string(embed.shape),
+                "[channels, codes]");
+  }
+  channels_ = static_cast<int>(embed.shape[0]);
+  size_ = static_cast<int>(embed.shape[1]);
+  const auto at = [&](int channel, int code) {
+    return embed.values[static_cast<std::size_t>(channel) * embed.shape[1] +
+                        static_cast<std::size_t>(code)];
+  };
+  vectors_.reserve(embed.values.size());
+  for (int code = 0; code < size_; ++code) {
+    double square = 0;
+    for (int c = 0; c < channels_; ++c) {
+      vectors_.push_back(at(c, code));
+      square += static_cast<double>(at(c, code)) * at(c, code);
+    }
+    squares_.push_back(static_cast<float>(square));
+  }
+  matrix_ =
+      PackedMatrix(1, channels_, size_, [&](int, int c, int code) { return -2 * at(c, code); });
+}
+
+void Codebook::nearest(const TensorView& in, std::int32_t* codes) const {
+  if (in.shape.channels != channels_) {
+    throw Error("codebook", std::to_string(in.shape.channels) + " channels",
+                std::to_string(channels_));
+  }
+  Epilogue epilogue;
+  epilogue.bias = squares_.data();  // |x|^2 is the same for all codes
+  const auto width = static_cast<std::size_t>(size_);
+  for_ranges(in.shape.pixels(), width, [&](std::size_t begin, std::size_t end) {
+    constexpr int kRows = PackedMatrix::kRows;
+    thread_local std::vector<float> memory;
+    if (memory.size() < kRows * width) memory.resize(kRows * width);
+    const float* rows[kRows];
+    float* distances[kRows];
+    for (int r = 0; r < kRows; ++r)
+      distances[r] = memory.data() + static_cast<std::size_t>(r) * width;
+    for (std::size_t i = begin; i < end; i += kRows) {
+      const int count = static_cast<int>(std::min<std::size_t>(kRows, end - i));
+      for (int r = 0; r < count; ++r) rows[r] = in.pixel(i + static_cast<std::size_t>(r));
+      matrix_.multiply(rows, count, distances, epilogue, nullptr, 0, matrix_.panels());
+      for (int r = 0; r < count; ++r) {
+        const float* least = std::min_element(distances[r], distances[r] + width);
+        codes[i + static_cast<std::size_t>(r)] = static_cast<std::int32_t>(least - distances[r]);
+      }
+    }
+  });
+}
+
+void Codebook::embed(const std::int32_t* codes, const TensorView& out) const {
+  if (out.shape.channels != channels_) {
+    throw Error("codebook", std::to_string(out.shape.channels) + " channels",
+                std::to_string(channels_));
+  }
+  const auto width = static_cast<std::size_t>(channels_);
+  for_ranges(out.shape.pixels(), width, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (codes[i] < 0 || codes[i] >= size_) {
+        throw Error("codebook", "the code " + std::to_string(codes[i]),
+                    "0 to " + std::to_string(size_ - 1));
+      }
+      const float* vector = vectors_.data() + static_cast<std::size_t>(codes[i]) * width;
+      std::memcpy(out.pixel(i), vector, width * sizeof(float));
+    }
+  });
+}
+
+}  // namespace ps::nn
