@@ -12,8 +12,11 @@ namespace ps::nn {
 struct WeightTensor {
   std::vector<std::size_t> shape;
   std::vector<float> values;
+  /// What the file held them as. A tensor of any type but F32, F16, BF16 and F64 (a counter) has no
+  /// values, and lookups refuse it.
+  std::string type = "F32";
 
-  std::size_t elements() const;
+  std::size_t elements() const;  ///< as the shape says
 };
 
 /// @return "[16, 3, 4, 4]"
@@ -21,13 +24,14 @@ std::string to_string(const std::vector<std::size_t>& shape);
 
 /// @brief Named weights of one or more networks, as the published state dict names them, without
 /// wrapper prefixes (DESIGN.md). All lookups throw ps::Error that names the tensor when it is
-/// missing, of another shape than asked for, or holds a value that is not finite.
+/// missing, no floats, of another shape than asked for, or holds a value that is not finite.
 class Weights {
  public:
   /// In an asked-for shape: this axis may be anything but 0.
   static constexpr std::size_t kAny = 0;
 
   Weights() = default;
+  /// Throws ps::Error when a tensor's values do not fill its shape.
   /// @param name  stands in messages: the file they came from
   Weights(std::string name, std::map<std::string, WeightTensor> tensors);
 
@@ -38,8 +42,8 @@ class Weights {
   const WeightTensor& get(const std::string& name, const std::vector<std::size_t>& shape) const;
 
   /// @brief A layer's weight as the network uses it: `PREFIX.weight` itself, or `weight_orig` over
-  /// its spectral norm u^T M v (M is it reshaped to [out, rest]; SPEC.md 3), or `weight_g` * v / |v|
-  /// of `weight_v` by rows (weight norm).
+  /// its spectral norm u^T M v (M is it reshaped to [out, rest]; SPEC.md 3), or `weight_g` * v /
+  /// |v| of `weight_v` by rows (weight norm).
   WeightTensor layer(const std::string& prefix, const std::vector<std::size_t>& shape) const;
 
   /// @brief A vector of `count` values; zeros when it is absent and `optional`.
