@@ -3,8 +3,8 @@
 
 namespace ps::nn {
 
-/// @brief What is applied to a value before it is stored: the value itself, or value * slope where it is
-/// negative. slope 1 = nothing, 0 = ReLU, 0.2 = the published leaky ReLU.
+/// @brief What is applied to a value before it is stored: the value itself, or value * slope where
+/// it is negative. slope 1 = nothing, 0 = ReLU, 0.2 = the published leaky ReLU.
 struct Activation {
   float slope = 1;
 };

@@ -16,7 +16,7 @@ struct WinogradWeights;
 enum class Method {
   automatic,  ///< winograd where it is faster and its error was found to stay small (README)
   direct,
-  winograd,   ///< F(4x4, 3x3); 3x3 with stride and dilation 1 alone, others stay direct
+  winograd,  ///< F(4x4, 3x3); 3x3 with stride and dilation 1 alone, others stay direct
 };
 
 struct ConvolutionOptions {
@@ -27,8 +27,8 @@ struct ConvolutionOptions {
   Storage storage = Storage::f32;
 };
 
-/// @brief What may be done to the input of a convolution as it is read: relu(x * scale + shift), for
-/// each channel; zeros of the padding stay zeros. Null = nothing.
+/// @brief What may be done to the input of a convolution as it is read: relu(x * scale + shift),
+/// for each channel; zeros of the padding stay zeros. Null = nothing.
 struct Prologue {
   const float* scale = nullptr;
   const float* shift = nullptr;
@@ -46,7 +46,7 @@ class Convolution {
   Convolution(Convolution&&) noexcept;
   Convolution& operator=(Convolution&&) noexcept;
 
-  int in_channels() const { return matrix_in_; }
+  int in_channels() const { return in_; }
   int out_channels() const { return out_; }
   /// @return the shape that an input of this shape becomes; 0 pixels when the kernel does not fit
   Shape output(const Shape& in) const;
@@ -59,9 +59,10 @@ class Convolution {
                   const Epilogue& epilogue = {}, const Prologue& prologue = {}) const;
 
  private:
+  void direct(const TensorView& in, const TensorView& out, const Epilogue& epilogue) const;
+
   ConvolutionOptions options_;
-  int kernel_ = 1, matrix_in_ = 0, out_ = 0;
-  bool gathered_ = false;  ///< few channels: a pixel's patch is copied into one row first
+  int kernel_ = 1, in_ = 0, out_ = 0;
   std::vector<float> bias_;
   PackedMatrix matrix_;
   std::unique_ptr<WinogradWeights> winograd_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Operators that treat every value by itself. `out` may be `in`. All throw ps::Error when shapes do not
-// fit. exp, tanh and sigmoid are within 3 units in the last place of 1 (3e-7) of the exact value,
-// and do the same operations for a value wherever it stands.
+// Operators that treat every value by itself. `out` may be `in`. All throw ps::Error when shapes do
+// not fit. exp, tanh and sigmoid are within 3 units in the last place of 1 (3e-7) of the exact
+// value, and do the same operations for a value wherever it stands.
 #pragma once
 
 #include "libps/nn/activation.h"
@@ -14,7 +14,8 @@ void activate(const TensorView& in, const TensorView& out, Activation activation
 /// @brief torch elu, alpha 1: x, or exp(x) - 1 where x is negative.
 void elu(const TensorView& in, const TensorView& out);
 
-/// @brief elu of [x, -x]: twice the channels (Salimans and others, PixelCNN++). `out` must not overlap `in`.
+/// @brief elu of [x, -x]: twice the channels (Salimans and others, PixelCNN++). `out` must not
+/// overlap `in`.
 void concat_elu(const TensorView& in, const TensorView& out);
 
 void tanh(const TensorView& in, const TensorView& out);

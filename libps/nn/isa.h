@@ -15,7 +15,7 @@ std::vector<Isa> available_isas();
 /// @return the one in use: the fastest there is, unless chosen otherwise
 Isa isa();
 
-/// @brief Chooses one, for tests and measurements. Matrices that were packed before must not be used after.
+/// @brief Chooses one, for tests and measurements. Matrices stay with what they were packed for.
 /// Throws ps::Error when this machine cannot run it.
 void set_isa(Isa isa);
 

@@ -9,6 +9,8 @@
 
 namespace ps::nn {
 
+struct Kernels;
+
 /// How weights are kept in memory; sums are always of single precision.
 enum class Storage { f32, bf16 };
 
@@ -28,8 +30,9 @@ struct Epilogue {
 /// It multiplies rows that are given as pointers: `depth` floats for each tap. What a convolution
 /// reads outside the image, or what a local mask hides, is a pointer to zeros; so every
 /// convolution of this room is this one product. A sum is taken tap by tap and, within a tap,
-/// from the first channel on, in one chain: it does not depend on how many rows are multiplied at once,
-/// on threads, or on the row's place. After Dukhan, "The Indirect Convolution Algorithm" (2019).
+/// from the first channel on, in one chain: it does not depend on how many rows are multiplied at
+/// once, on threads, or on the row's place. After Dukhan, "The Indirect Convolution Algorithm"
+/// (2019).
 class PackedMatrix {
  public:
   PackedMatrix() = default;
@@ -41,22 +44,33 @@ class PackedMatrix {
   int taps() const { return taps_; }
   int depth() const { return depth_; }
   int columns() const { return columns_; }
-  int panels() const;
+  std::size_t rows() const {
+    return static_cast<std::size_t>(taps_) * static_cast<std::size_t>(depth_);
+  }
+  int panels() const { return panels_; }
   std::size_t bytes() const;
+  const float* zeros() const { return zeros_.get(); }  ///< rows() zeros
 
   /// @brief Multiplies up to kRows rows with panels [first, last) of columns.
-  /// @param rows  [taps][kRows] pointers to `depth` floats each; of each tap, the first `count` count
+  /// @param rows  [taps][kRows] pointers; of each tap, the first `count` count
+  /// @param taps  into how many equal runs the rows are cut: taps(), or, where the floats of
+  /// several taps
+  ///              lie behind each other in memory, a divisor of it
   /// @param out, residual  `count` pointers to a row's column 0; residual may be null
   static constexpr int kRows = 6;
-  void multiply(const float* const* rows, int count, float* const* out, const Epilogue& epilogue,
-                const float* const* residual, int first_panel, int last_panel) const;
+  void multiply(const float* const* rows, int taps, int count, float* const* out,
+                const Epilogue& epilogue, const float* const* residual, int first_panel,
+                int last_panel) const;
 
  private:
   int taps_ = 0, depth_ = 0, columns_ = 0;
-  int panel_ = 0;  ///< columns of a panel, padded to whole vectors
+  int panels_ = 0;
+  int panel_ = 0;  ///< columns of every panel but the last: whole vectors
   Storage storage_ = Storage::f32;
-  AlignedFloats values_;
-  std::size_t floats_ = 0;
+  AlignedFloats values_;  ///< panel by panel: [taps][depth][columns, padded to whole vectors]
+  std::size_t count_ = 0;
+  AlignedFloats zeros_;
+  const Kernels* kernels_ = nullptr;  ///< those that it was packed for
 };
 
 }  // namespace ps::nn

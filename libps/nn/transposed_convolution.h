@@ -9,8 +9,8 @@
 
 namespace ps::nn {
 
-/// @brief torch.nn.ConvTranspose2d, kernel 4x4, stride 2, padding 1: twice the size. Each of the four
-/// places of a 2x2 block of outputs is a convolution of 2x2 taps.
+/// @brief torch.nn.ConvTranspose2d, kernel 4x4, stride 2, padding 1: twice the size. Each of the
+/// four places of a 2x2 block of outputs is a convolution of 2x2 taps.
 class TransposedConvolution {
  public:
   /// @param weight  [in, out, 4, 4]

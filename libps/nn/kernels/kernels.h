@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Internal to the nn room: inner loops, compiled once for each instruction set. The sources include C
-// headers and kernels/ alone, so that nothing inline can be shared between instruction sets.
+// Internal to the nn room: inner loops, compiled once for each instruction set. The sources include
+// C headers and kernels/ alone, so that nothing inline can be shared between instruction sets.
 #pragma once
 
 #include <stddef.h>
@@ -14,10 +14,11 @@ constexpr int kTileRows = 6;
 struct TileJob {
   const float* const* rows;  ///< [taps][kTileRows], each of `depth` floats
   int taps, depth;
-  int count;            ///< rows to compute, 1 to kTileRows
-  const void* weights;  ///< the panel: [taps][depth][columns padded to whole vectors], aligned to 64 bytes
-  int columns;          ///< of the panel, at most Kernels::most_columns
-  float* const* out;    ///< `count` pointers to a row's column 0; the panel begins at first_column
+  int count;  ///< rows to compute, 1 to kTileRows
+  const void*
+      weights;  ///< the panel: [taps][depth][columns padded to whole vectors], aligned to 64 bytes
+  int columns;  ///< of the panel, at most Kernels::most_columns
+  float* const* out;  ///< `count` pointers to a row's column 0; the panel begins at first_column
   const float* const* residual;  ///< like `out`, or null
   int first_column;
   const float *bias, *scale, *shift;  ///< from the panel's first column on; or null

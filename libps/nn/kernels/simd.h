@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Internal to kernels/: vectors of floats for the instruction set that the source is compiled for (PS_ISA),
-// in an unnamed namespace, so that no instruction set can borrow another's code.
+// Internal to kernels/: vectors of floats for the instruction set that the source is compiled for
+// (PS_ISA), in an unnamed namespace, so that no instruction set can borrow another's code.
 #pragma once
 
 #include <stddef.h>

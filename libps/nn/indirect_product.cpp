@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/nn/indirect_product.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "libps/core/error.h"
+#include "libps/core/parallel.h"
+
+namespace ps::nn {
+namespace {
+
+constexpr std::size_t kRows = PackedMatrix::kRows;
+constexpr std::size_t kGroup = IndirectRows::kSlots;
+constexpr std::size_t kSmallMatrix = 128 * 1024;  ///< bytes
+constexpr std::size_t kTasks = 8;   ///< aimed at: so few rows are split by panels, too
+constexpr double kSmallWork = 2e5;  ///< multiplications that are not worth waking a thread
+
+/// Some rows with some panels.
+struct Part {
+  std::size_t begin, end;
+  int first, last;
+};
+
+void multiply_part(const PackedMatrix& matrix, const IndirectRows& rows, const TensorView& out,
+                   const Epilogue& epilogue, const Part& part) {
+  thread_local std::vector<const float*> pointers;
+  const std::size_t tile_pointers = static_cast<std::size_t>(rows.taps) * kRows;
+  pointers.resize(std::max(pointers.size(), kGroup / kRows * tile_pointers));
+  rows.sources(part.begin, part.end, pointers.data());
+  float* targets[kGroup];
+  const float* residuals[kGroup];
+  for (std::size_t row = part.begin; row < part.end; ++row) {
+    const std::size_t pixel = rows.target ? rows.target(row) : row;
+    targets[row - part.begin] = out.pixel(pixel);
+    if (epilogue.residual) residuals[row - part.begin] = epilogue.residual->pixel(pixel);
+  }
+  // What a panel needs stays in the cache: panels in turn, or, where all are small, all at once.
+  const int step = matrix.bytes() <= kSmallMatrix ? part.last - part.first : 1;
+  for (int panel = part.first; panel < part.last; panel += step) {
+    for (std::size_t slot = 0; slot < part.end - part.begin; slot += kRows) {
+      matrix.multiply(pointers.data() + slot / kRows * tile_pointers, rows.taps,
+                      static_cast<int>(std::min(kRows, part.end - part.begin - slot)),
+                      targets + slot, epilogue, epilogue.residual ? residuals + slot : nullptr,
+                      panel, panel + step);
+    }
+  }
+}
+
+std::string text(const Shape& s) {
+  return std::to_string(s.images) + "x" + std::to_string(s.height) + "x" + std::to_string(s.width) +
+         "x" + std::to_string(s.channels);
+}
+
+}  // namespace
+
+void indirect_product(const PackedMatrix& matrix, const IndirectRows& rows, const TensorView& out,
+                      const Epilogue& epilogue) {
+  if (rows.count == 0 || matrix.columns() == 0) return;
+  const auto panels = static_cast<std::size_t>(matrix.panels());
+  const std::size_t row_groups = (rows.count + kGroup - 1) / kGroup;
+  const std::size_t panel_groups = std::min(panels, (kTasks + row_groups - 1) / row_groups);
+  const auto task = [&](std::size_t i) {
+    const std::size_t begin = i / panel_groups * kGroup, part = i % panel_groups;
+    multiply_part(matrix, rows, out, epilogue,
+                  {begin, std::min(rows.count, begin + kGroup),
+                   static_cast<int>(panels * part / panel_groups),
+                   static_cast<int>(panels * (part + 1) / panel_groups)});
+  };
+  const std::size_t tasks = row_groups * panel_groups;
+  const double work = static_cast<double>(rows.count) * matrix.taps() * matrix.depth() *
+                      static_cast<double>(matrix.columns());
+  if (work < kSmallWork) {
+    for (std::size_t i = 0; i < tasks; ++i) task(i);
+  } else {
+    parallel_for(tasks, task);
+  }
+}
+
+void check_same(const Shape& got, const Shape& wanted, const char* what) {
+  if (got != wanted) throw Error(what, "a tensor of " + text(got), text(wanted));
+}
+
+void check_epilogue(const Epilogue& epilogue, const Shape& out, const char* what) {
+  if (epilogue.bias) throw Error(what, "an epilogue with a bias", "the operator's own bias alone");
+  if (!epilogue.scale != !epilogue.shift) {
+    throw Error(what, "an epilogue with a scale or a shift alone", "both or neither");
+  }
+  if (epilogue.residual) check_same(epilogue.residual->shape, out, what);
+}
+
+void check_bias(const std::vector<float>& bias, std::size_t channels, const char* what) {
+  if (!bias.empty() && bias.size() != channels) {
+    throw Error(what, "a bias of " + std::to_string(bias.size()) + " values",
+                std::to_string(channels) + ", one for each channel, or none");
+  }
+}
+
+}  // namespace ps::nn
