@@ -54,7 +54,8 @@ void Codebook::nearest(const TensorView& in, std::int32_t* codes) const {
     for (std::size_t i = begin; i < end; i += kRows) {
       const int count = static_cast<int>(std::min<std::size_t>(kRows, end - i));
       for (int r = 0; r < count; ++r) rows[r] = in.pixel(i + static_cast<std::size_t>(r));
-      matrix_.multiply(rows, count, distances, epilogue, nullptr, 0, matrix_.panels());
+      matrix_.multiply({rows, &PackedMatrix::kOnlyTap, 1, count, distances, nullptr}, 1, epilogue,
+                       0, matrix_.panels());
       for (int r = 0; r < count; ++r) {
         const float* least = std::min_element(distances[r], distances[r] + width);
         codes[i + static_cast<std::size_t>(r)] = static_cast<std::int32_t>(least - distances[r]);

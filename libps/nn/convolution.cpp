@@ -21,8 +21,8 @@ class Patches {
   Patches(const TensorView& in, const Shape& out, int kernel, const ConvolutionOptions& options)
       : in_(in), out_(out), kernel_(kernel), options_(options) {}
 
-  /// Sets a pointer for each tap of pixels [begin, end), to the input's pixel or to zeros.
-  void point(std::size_t begin, std::size_t end, const float* zeros, const float** pointers) const {
+  /// Sets a pointer for each tap of pixels [begin, end); null outside the image.
+  void point(std::size_t begin, std::size_t end, const float** pointers) const {
     const int taps = kernel_ * kernel_;
     for_each_patch(begin, end, [&](std::size_t i, int image, int y0, int x0) {
       const float** to = pointers + slot_of(i, 0, taps);
@@ -31,7 +31,7 @@ class Patches {
         const bool row_inside = y >= 0 && y < in_.shape.height;
         for (int kx = 0; kx < kernel_; ++kx, to += PackedMatrix::kRows) {
           const int x = x0 + kx * options_.dilation;
-          *to = row_inside && x >= 0 && x < in_.shape.width ? in_.pixel(image, y, x) : zeros;
+          *to = row_inside && x >= 0 && x < in_.shape.width ? in_.pixel(image, y, x) : nullptr;
         }
       }
     });
@@ -44,7 +44,7 @@ class Patches {
 
   /// Sets a pointer for each line of the kernel; lines that reach outside are copied, with zeros
   /// there, into `copies`: room for kernel^2 * channels floats for each pixel.
-  void point_to_lines(std::size_t begin, std::size_t end, const float* zeros, float* copies,
+  void point_to_lines(std::size_t begin, std::size_t end, float* copies,
                       const float** pointers) const {
     const int span = kernel_ * in_.shape.channels;
     for_each_patch(begin, end, [&](std::size_t i, int image, int y0, int x0) {
@@ -53,7 +53,7 @@ class Patches {
       for (int ky = 0; ky < kernel_; ++ky, to += PackedMatrix::kRows) {
         const int y = y0 + ky;
         if (y < 0 || y >= in_.shape.height) {
-          *to = zeros;
+          *to = nullptr;
         } else if (whole) {
           *to = in_.pixel(image, y, x0);
         } else {
@@ -188,12 +188,12 @@ void Convolution::direct(const TensorView& in, const TensorView& out,
       thread_local std::vector<float> copies;
       const std::size_t floats = IndirectRows::kSlots * matrix_.rows();
       copies.resize(std::max(copies.size(), floats));
-      patches.point_to_lines(begin, end, matrix_.zeros(), copies.data(), pointers);
+      patches.point_to_lines(begin, end, copies.data(), pointers);
     };
   } else {
     rows.taps = kernel_ * kernel_;
     rows.sources = [&](std::size_t begin, std::size_t end, const float** pointers) {
-      patches.point(begin, end, matrix_.zeros(), pointers);
+      patches.point(begin, end, pointers);
     };
   }
   indirect_product(matrix_, rows, out, epilogue);

@@ -22,27 +22,66 @@ struct Part {
   int first, last;
 };
 
-void multiply_part(const PackedMatrix& matrix, const IndirectRows& rows, const TensorView& out,
-                   const Epilogue& epilogue, const Part& part) {
-  thread_local std::vector<const float*> pointers;
-  const std::size_t tile_pointers = static_cast<std::size_t>(rows.taps) * kRows;
-  pointers.resize(std::max(pointers.size(), kGroup / kRows * tile_pointers));
-  rows.sources(part.begin, part.end, pointers.data());
+/// What a thread prepares of a group of rows, for all panels.
+struct Group {
+  std::vector<const float*> pointers;  ///< as IndirectRows has them, then without the taps left out
+  std::vector<int> tap_index;
   float* targets[kGroup];
   const float* residuals[kGroup];
+  PackedMatrix::Tile tiles[kGroup / kRows];
+};
+
+/// Leaves out the taps that are null in all rows of a tile; what is null in some becomes zeros.
+int keep_taps(const float** pointers, int taps, std::size_t rows, const float* zeros,
+              int* tap_index) {
+  int kept = 0;
+  for (int tap = 0; tap < taps; ++tap) {
+    const float** from = pointers + static_cast<std::size_t>(tap) * kRows;
+    const float** to = pointers + static_cast<std::size_t>(kept) * kRows;
+    bool any = false;
+    for (std::size_t i = 0; i < rows; ++i) any = any || from[i];
+    if (!any) continue;
+    for (std::size_t i = 0; i < rows; ++i) to[i] = from[i] ? from[i] : zeros;
+    tap_index[kept++] = tap;
+  }
+  return kept;
+}
+
+void prepare(const PackedMatrix& matrix, const IndirectRows& rows, const TensorView& out,
+             const Epilogue& epilogue, const Part& part, Group& group) {
+  const auto taps = static_cast<std::size_t>(rows.taps);
+  group.pointers.resize(std::max(group.pointers.size(), kGroup * taps));
+  group.tap_index.resize(std::max(group.tap_index.size(), kGroup / kRows * taps));
+  rows.sources(part.begin, part.end, group.pointers.data());
   for (std::size_t row = part.begin; row < part.end; ++row) {
     const std::size_t pixel = rows.target ? rows.target(row) : row;
-    targets[row - part.begin] = out.pixel(pixel);
-    if (epilogue.residual) residuals[row - part.begin] = epilogue.residual->pixel(pixel);
+    group.targets[row - part.begin] = out.pixel(pixel);
+    if (epilogue.residual) group.residuals[row - part.begin] = epilogue.residual->pixel(pixel);
   }
+  for (std::size_t slot = 0; slot < part.end - part.begin; slot += kRows) {
+    const std::size_t tile = slot / kRows, count = std::min(kRows, part.end - part.begin - slot);
+    const float** pointers = group.pointers.data() + tile * taps * kRows;
+    int* tap_index = group.tap_index.data() + tile * taps;
+    const int kept = keep_taps(pointers, rows.taps, count, matrix.zeros(), tap_index);
+    group.tiles[tile] = {pointers,
+                         tap_index,
+                         kept,
+                         static_cast<int>(count),
+                         group.targets + slot,
+                         epilogue.residual ? group.residuals + slot : nullptr};
+  }
+}
+
+void multiply_part(const PackedMatrix& matrix, const IndirectRows& rows, const TensorView& out,
+                   const Epilogue& epilogue, const Part& part) {
+  thread_local Group group;
+  prepare(matrix, rows, out, epilogue, part, group);
   // What a panel needs stays in the cache: panels in turn, or, where all are small, all at once.
   const int step = matrix.bytes() <= kSmallMatrix ? part.last - part.first : 1;
+  const std::size_t tiles = (part.end - part.begin + kRows - 1) / kRows;
   for (int panel = part.first; panel < part.last; panel += step) {
-    for (std::size_t slot = 0; slot < part.end - part.begin; slot += kRows) {
-      matrix.multiply(pointers.data() + slot / kRows * tile_pointers, rows.taps,
-                      static_cast<int>(std::min(kRows, part.end - part.begin - slot)),
-                      targets + slot, epilogue, epilogue.residual ? residuals + slot : nullptr,
-                      panel, panel + step);
+    for (std::size_t tile = 0; tile < tiles; ++tile) {
+      matrix.multiply(group.tiles[tile], rows.taps, epilogue, panel, panel + step);
     }
   }
 }
@@ -58,14 +97,17 @@ void indirect_product(const PackedMatrix& matrix, const IndirectRows& rows, cons
                       const Epilogue& epilogue) {
   if (rows.count == 0 || matrix.columns() == 0) return;
   const auto panels = static_cast<std::size_t>(matrix.panels());
-  const std::size_t row_groups = (rows.count + kGroup - 1) / kGroup;
+  const std::size_t most_groups = (rows.count + kGroup - 1) / kGroup;
+  const std::size_t tiles = (rows.count + kRows - 1) / kRows;
+  const std::size_t group = (tiles + most_groups - 1) / most_groups * kRows;  // all alike
+  const std::size_t row_groups = (rows.count + group - 1) / group;
   const std::size_t panel_groups = std::min(panels, (kTasks + row_groups - 1) / row_groups);
   const auto task = [&](std::size_t i) {
-    const std::size_t begin = i / panel_groups * kGroup, part = i % panel_groups;
-    multiply_part(matrix, rows, out, epilogue,
-                  {begin, std::min(rows.count, begin + kGroup),
-                   static_cast<int>(panels * part / panel_groups),
-                   static_cast<int>(panels * (part + 1) / panel_groups)});
+    const std::size_t begin = i / panel_groups * group, part = i % panel_groups;
+    multiply_part(
+        matrix, rows, out, epilogue,
+        {begin, std::min(rows.count, begin + group), static_cast<int>(panels * part / panel_groups),
+         static_cast<int>(panels * (part + 1) / panel_groups)});
   };
   const std::size_t tasks = row_groups * panel_groups;
   const double work = static_cast<double>(rows.count) * matrix.taps() * matrix.depth() *

@@ -17,8 +17,9 @@ struct IndirectRows {
   static constexpr std::size_t kSlots = 240;
 
   std::size_t count = 0;
-  int taps = 1;  ///< pointers of a row: see PackedMatrix::multiply
-  /// (begin, end, pointers): sets pointers[slot_of(row - begin, tap, taps)] for every row and tap.
+  int taps = 1;  ///< pointers of a row: into how many PackedMatrix::multiply cuts it
+  /// (begin, end, pointers): sets pointers[slot_of(row - begin, tap, taps)] for every row and tap;
+  /// null stands for zeros.
   std::function<void(std::size_t begin, std::size_t end, const float** pointers)> sources;
   /// The pixel of `out` that a row becomes; none = the row's own number.
   std::function<std::size_t(std::size_t row)> target = {};

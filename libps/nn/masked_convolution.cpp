@@ -49,7 +49,7 @@ void MaskedConvolution::operator()(const TensorView& in, const std::uint8_t* mas
         const bool inside = y >= 0 && y < s.height && x >= 0 && x < s.width;
         const bool visible = inside && mask[static_cast<std::size_t>(tap) * cells + cell];
         pointers[slot_of(row - begin, tap, 9)] =
-            visible ? in.pixel(static_cast<int>(row / cells), y, x) : matrix_.zeros();
+            visible ? in.pixel(static_cast<int>(row / cells), y, x) : nullptr;
       }
     }
   };

@@ -61,18 +61,18 @@ std::size_t PackedMatrix::bytes() const {
   return count_ * (storage_ == Storage::f32 ? sizeof(float) : sizeof(std::uint16_t));
 }
 
-void PackedMatrix::multiply(const float* const* rows, int taps, int count, float* const* out,
-                            const Epilogue& epilogue, const float* const* residual, int first_panel,
+void PackedMatrix::multiply(const Tile& tile, int cut, const Epilogue& epilogue, int first_panel,
                             int last_panel) const {
   const bool f32 = storage_ == Storage::f32;
-  const std::size_t panel_values = this->rows() * static_cast<std::size_t>(panel_);
+  const std::size_t panel_values = rows() * static_cast<std::size_t>(panel_);
   TileJob job = {};
-  job.rows = rows;
-  job.taps = taps;
-  job.depth = taps ? taps_ * depth_ / taps : 0;
-  job.count = count;
-  job.out = out;
-  job.residual = residual;
+  job.rows = tile.rows;
+  job.tap_index = tile.tap_index;
+  job.taps = tile.taps;
+  job.depth = cut ? taps_ * depth_ / cut : 0;
+  job.count = tile.count;
+  job.out = tile.out;
+  job.residual = tile.residual;
   job.slope = epilogue.activation.slope;
   for (int panel = first_panel; panel < last_panel; ++panel) {
     const std::size_t at = panel_values * static_cast<std::size_t>(panel);

@@ -28,8 +28,8 @@ struct Epilogue {
 /// @brief A matrix of taps * depth rows and some columns, packed for the machine's vector width.
 ///
 /// It multiplies rows that are given as pointers: `depth` floats for each tap. What a convolution
-/// reads outside the image, or what a local mask hides, is a pointer to zeros; so every
-/// convolution of this room is this one product. A sum is taken tap by tap and, within a tap,
+/// reads outside the image, or what a local mask hides, is a pointer to zeros or a tap left out; so
+/// every convolution of this room is this one product. A sum is taken tap by tap and, within a tap,
 /// from the first channel on, in one chain: it does not depend on how many rows are multiplied at
 /// once, on threads, or on the row's place. After Dukhan, "The Indirect Convolution Algorithm"
 /// (2019).
@@ -49,17 +49,25 @@ class PackedMatrix {
   }
   int panels() const { return panels_; }
   std::size_t bytes() const;
-  const float* zeros() const { return zeros_.get(); }  ///< rows() zeros
+  const float* zeros() const { return zeros_.get(); }  ///< rows() of them
+
+  /// The rows of one tile: `count` of them, and of each the taps that are not all zeros.
+  struct Tile {
+    const float* const* rows;  ///< [taps][kRows] pointers; of each tap, the first `count` count
+    const int* tap_index;      ///< [taps], rising: which taps these are; the others are zeros
+    int taps;
+    int count;
+    float* const* out;             ///< `count` pointers to a row's column 0
+    const float* const* residual;  ///< the same, or null
+  };
 
   /// @brief Multiplies up to kRows rows with panels [first, last) of columns.
-  /// @param rows  [taps][kRows] pointers; of each tap, the first `count` count
-  /// @param taps  into how many equal runs the rows are cut: taps(), or, where the floats of
-  /// several taps
-  ///              lie behind each other in memory, a divisor of it
-  /// @param out, residual  `count` pointers to a row's column 0; residual may be null
+  /// @param cut  into how many taps a row is cut here: taps(), or, where the floats of several taps
+  /// lie
+  ///             behind each other in memory, a divisor of it
   static constexpr int kRows = 6;
-  void multiply(const float* const* rows, int taps, int count, float* const* out,
-                const Epilogue& epilogue, const float* const* residual, int first_panel,
+  static constexpr int kOnlyTap = 0;  ///< tap_index of a row of one tap
+  void multiply(const Tile& tile, int cut, const Epilogue& epilogue, int first_panel,
                 int last_panel) const;
 
  private:

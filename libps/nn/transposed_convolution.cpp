@@ -56,7 +56,7 @@ void TransposedConvolution::operator()(const TensorView& in, const TensorView& o
           const int y = line % s.height + offset(phase / 2, tap / 2);
           const int x = static_cast<int>(row % width) + offset(phase % 2, tap % 2);
           const bool inside = y >= 0 && y < s.height && x >= 0 && x < s.width;
-          pointers[slot_of(row - begin, tap, 4)] = inside ? in.pixel(image, y, x) : matrix.zeros();
+          pointers[slot_of(row - begin, tap, 4)] = inside ? in.pixel(image, y, x) : nullptr;
         }
       }
     };

@@ -125,7 +125,9 @@ class Run {
             rows[i] = from + product * in_step + (first + i) * in;
             results[i] = to + product * out_step + (first + i) * out;
           }
-          matrix.multiply(rows, 1, static_cast<int>(count), results, {}, nullptr, panel, panel + 1);
+          matrix.multiply(
+              {rows, &PackedMatrix::kOnlyTap, 1, static_cast<int>(count), results, nullptr}, 1, {},
+              panel, panel + 1);
         }
       }
     }

@@ -13,12 +13,13 @@ constexpr int kTileRows = 6;
 /// @brief One tile of a product: up to six rows by one panel of a PackedMatrix.
 struct TileJob {
   const float* const* rows;  ///< [taps][kTileRows], each of `depth` floats
+  const int* tap_index;      ///< [taps]: which of the weights' taps each is
   int taps, depth;
-  int count;  ///< rows to compute, 1 to kTileRows
-  const void*
-      weights;  ///< the panel: [taps][depth][columns padded to whole vectors], aligned to 64 bytes
-  int columns;  ///< of the panel, at most Kernels::most_columns
-  float* const* out;  ///< `count` pointers to a row's column 0; the panel begins at first_column
+  int count;            ///< rows to compute, 1 to kTileRows
+  const void* weights;  ///< the panel: [all taps][depth][columns padded to whole vectors], aligned
+                        ///< to 64 bytes
+  int columns;          ///< of the panel, at most Kernels::most_columns
+  float* const* out;    ///< `count` pointers to a row's column 0; the panel begins at first_column
   const float* const* residual;  ///< like `out`, or null
   int first_column;
   const float *bias, *scale, *shift;  ///< from the panel's first column on; or null

@@ -46,8 +46,10 @@ inline void finish_plain(const TileJob& job, const Floats (&sum)[R][V]) {
 template <int R, int V, class Weight>
 void product(const TileJob& job) {
   Floats sum[R][V] = {};
-  const Weight* weights = static_cast<const Weight*>(job.weights);
+  const size_t tap_weights = static_cast<size_t>(job.depth) * V * kLanes;
   for (int tap = 0; tap < job.taps; ++tap) {
+    const Weight* weights = static_cast<const Weight*>(job.weights) +
+                            static_cast<size_t>(job.tap_index[tap]) * tap_weights;
     const float* rows[R];
     for (int r = 0; r < R; ++r) rows[r] = job.rows[tap * kTileRows + r];
     for (int i = 0; i < job.depth; ++i) {
