@@ -15,11 +15,6 @@ using Axes = std::vector<std::size_t>;
 
 constexpr double kBatchNormEpsilon = 1e-5;
 
-bool holds_floats(const WeightTensor& tensor) {
-  return tensor.type == "F32" || tensor.type == "F16" || tensor.type == "BF16" ||
-         tensor.type == "F64";
-}
-
 std::string called(const std::string& name) { return "tensor '" + name + "'"; }
 
 /// A shape that may hold kAny.
@@ -110,6 +105,10 @@ std::size_t WeightTensor::elements() const {
   return product;
 }
 
+bool is_float_type(const std::string& type) {
+  return type == "F32" || type == "F16" || type == "BF16" || type == "F64";
+}
+
 std::string to_string(const std::vector<std::size_t>& shape) {
   std::string text;
   for (const std::size_t side : shape) text += (text.empty() ? "" : ", ") + std::to_string(side);
@@ -119,7 +118,7 @@ std::string to_string(const std::vector<std::size_t>& shape) {
 Weights::Weights(std::string name, std::map<std::string, WeightTensor> tensors)
     : name_(std::move(name)), tensors_(std::move(tensors)) {
   for (const auto& [key, tensor] : tensors_) {
-    const std::size_t expected = holds_floats(tensor) ? tensor.elements() : 0;
+    const std::size_t expected = is_float_type(tensor.type) ? tensor.elements() : 0;
     if (tensor.values.size() == expected) continue;
     throw Error(name_, called(key) + " has " + std::to_string(tensor.values.size()) + " values",
                 std::to_string(expected) + " for the shape " + to_string(tensor.shape));
@@ -138,7 +137,7 @@ const WeightTensor& Weights::get(const std::string& name,
   const auto found = tensors_.find(name);
   if (found == tensors_.end()) throw Error(name_, called(name) + " is missing", wanted(shape));
   const WeightTensor& tensor = found->second;
-  if (!holds_floats(tensor)) {
+  if (!is_float_type(tensor.type)) {
     throw Error(name_, called(name) + " is of type " + tensor.type, "F32, F16, BF16 or F64");
   }
   if (!fits(tensor.shape, shape)) {

@@ -19,6 +19,9 @@ struct WeightTensor {
   std::size_t elements() const;  ///< as the shape says
 };
 
+/// @return whether this, as safetensors spells it, is F32, F16, BF16 or F64
+bool is_float_type(const std::string& type);
+
 /// @return "[16, 3, 4, 4]"
 std::string to_string(const std::vector<std::size_t>& shape);
 

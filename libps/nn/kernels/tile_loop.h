@@ -30,14 +30,13 @@ inline void finish(const TileJob& job, int row, int column, int count, Floats su
   }
 }
 
-/// The same for most products: whole vectors, nothing but a bias and an activation.
-template <int R, int V>
-inline void finish_plain(const TileJob& job, const Floats (&sum)[R][V]) {
-  const Floats slope = all(job.slope);
-  for (int v = 0; v < V; ++v) {
-    const Floats bias = job.bias ? load(job.bias + v * kLanes) : Floats{};
-    for (int r = 0; r < R; ++r) {
-      store(job.out[r] + job.first_column + v * kLanes, activated(sum[r][v] + bias, slope));
+/// All of a tile; not inlined, so that sums stay in registers where this is not needed.
+__attribute__((noinline)) void finish_all(const TileJob& job, int rows, int vectors,
+                                          const Floats* sums) {
+  for (int r = 0; r < rows; ++r) {
+    for (int v = 0; v < vectors; ++v) {
+      const int left = job.columns - v * kLanes;
+      finish(job, r, v * kLanes, left < kLanes ? left : kLanes, sums[r * vectors + v]);
     }
   }
 }
@@ -45,12 +44,18 @@ inline void finish_plain(const TileJob& job, const Floats (&sum)[R][V]) {
 /// R rows by V vectors of columns. `Weight` is how a weight is stored; load_weights reads a vector.
 template <int R, int V, class Weight>
 void product(const TileJob& job) {
-  Floats sum[R][V] = {};
+  Floats sum[R][V];
+#pragma GCC unroll 6
+  for (int r = 0; r < R; ++r) {
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v) sum[r][v] = Floats{};
+  }
   const size_t tap_weights = static_cast<size_t>(job.depth) * V * kLanes;
   for (int tap = 0; tap < job.taps; ++tap) {
     const Weight* weights = static_cast<const Weight*>(job.weights) +
                             static_cast<size_t>(job.tap_index[tap]) * tap_weights;
     const float* rows[R];
+#pragma GCC unroll 6
     for (int r = 0; r < R; ++r) rows[r] = job.rows[tap * kTileRows + r];
     for (int i = 0; i < job.depth; ++i) {
       Floats w[V];
@@ -65,13 +70,25 @@ void product(const TileJob& job) {
       }
     }
   }
-  if (job.columns == V * kLanes && !job.scale && !job.residual) return finish_plain(job, sum);
-  for (int r = 0; r < R; ++r) {
+  if (job.columns == V * kLanes && !job.scale && !job.residual) {  // most products
+    const Floats slope = all(job.slope);
+#pragma GCC unroll 4
     for (int v = 0; v < V; ++v) {
-      const int left = job.columns - v * kLanes;
-      finish(job, r, v * kLanes, left < kLanes ? left : kLanes, sum[r][v]);
+      const Floats bias = job.bias ? load(job.bias + v * kLanes) : Floats{};
+#pragma GCC unroll 6
+      for (int r = 0; r < R; ++r) {
+        store(job.out[r] + job.first_column + v * kLanes, activated(sum[r][v] + bias, slope));
+      }
     }
+    return;
   }
+  Floats sums[R * V];
+#pragma GCC unroll 6
+  for (int r = 0; r < R; ++r) {
+#pragma GCC unroll 4
+    for (int v = 0; v < V; ++v) sums[r * V + v] = sum[r][v];
+  }
+  finish_all(job, R, V, sums);
 }
 
 template <int V, class Weight>
