@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <set>
+#include <utility>
 
 #include "io/atomic_file.h"
 #include "io/bytes.h"
@@ -86,6 +87,28 @@ StampedPose parse_colmap_line(std::string_view line, const LineReader& lines) {
   return pose;
 }
 
+/// Poses as they are read: each timestamp once.
+class PoseList {
+ public:
+  /// @param where  the line that the pose begins in
+  void add(const StampedPose& pose, const std::string& where) {
+    if (!seen_.insert(pose.timestamp).second) {
+      std::string stamp;
+      append_number(stamp, pose.timestamp);
+      throw Error(where, "timestamp " + stamp + " is there already", "each timestamp once");
+    }
+    poses_.push_back(pose);
+  }
+  std::vector<StampedPose> take(const std::string& name) {
+    if (poses_.empty()) throw Error(name, "holds no pose", "one at least");
+    return std::move(poses_);
+  }
+
+ private:
+  std::vector<StampedPose> poses_;
+  std::set<double> seen_;
+};
+
 /// COLMAP's second line of an image: `X Y POINT3D_ID` any number of times, also none.
 bool is_points_line(std::string_view line) {
   std::size_t count = 0;
@@ -96,12 +119,11 @@ bool is_points_line(std::string_view line) {
   return count % 3 == 0;
 }
 
-std::vector<StampedPose> parse_colmap(LineReader& lines) {
-  std::vector<StampedPose> poses;
+void parse_colmap(LineReader& lines, PoseList& poses) {
   std::string_view line;
   bool have = lines.next_content(line);
   while (have) {
-    poses.push_back(parse_colmap_line(line, lines));
+    poses.add(parse_colmap_line(line, lines), lines.where());
     have = lines.next(line);
     // Some tools leave the lines of points out; then this one is the next image's.
     const std::size_t words = have ? count_tokens(line) : 0;
@@ -109,7 +131,6 @@ std::vector<StampedPose> parse_colmap(LineReader& lines) {
       have = lines.next_content(line);
     }
   }
-  return poses;
 }
 
 /// @return rows of a 4x4 matrix, or of its upper three
@@ -147,6 +168,19 @@ StampedPose parse_realestate_line(std::string_view line, LineReader& lines) {
   expect_end(line, lines, "19 columns");
   pose.world_from_cam = checked_pose(m, lines.where()).inverse();
   return pose;
+}
+
+void parse_poses(TrajectoryFormat format, LineReader& lines, PoseList& poses) {
+  if (format == TrajectoryFormat::colmap_images) return parse_colmap(lines, poses);
+  std::string_view line;
+  while (lines.next_content(line)) {
+    const std::string where = lines.where();  // a pose of Open3D's goes on for four lines
+    if (format == TrajectoryFormat::tum) poses.add(parse_tum_line(line, lines), where);
+    if (format == TrajectoryFormat::open3d_log) poses.add(parse_log_pose(line, lines), where);
+    if (format == TrajectoryFormat::realestate10k && line.substr(0, 4) != "http") {
+      poses.add(parse_realestate_line(line, lines), where);
+    }
+  }
 }
 
 // --- writing ------------------------------------------------------------------------------------
@@ -193,18 +227,36 @@ void append_realestate(std::string& text, const StampedPose& pose, const std::st
   for (int r = 0; r < 3; ++r) append_all(text, Eigen::RowVector4d(cam_from_world.matrix().row(r)));
 }
 
+bool differ(const std::vector<StampedPose>& poses) {
+  std::set<double> seen;
+  return std::all_of(poses.begin(), poses.end(),
+                     [&](const StampedPose& pose) { return seen.insert(pose.timestamp).second; });
+}
+
 /// Whether timestamps can be frame numbers: whole, not below `least`, each once.
 bool are_numbers(const std::vector<StampedPose>& poses, double least) {
-  std::set<double> seen;
-  return std::all_of(poses.begin(), poses.end(), [&](const StampedPose& pose) {
-    const double number = pose.timestamp;
-    return number >= least && number < 1e9 && number == std::floor(number) &&
-           seen.insert(number).second;
-  });
+  return differ(poses) && std::all_of(poses.begin(), poses.end(), [&](const StampedPose& pose) {
+           const double number = pose.timestamp;
+           return number >= least && number < 1e9 && number == std::floor(number);
+         });
+}
+
+/// Throws ps::Error unless reading the file would give these poses back.
+void check_writable(const std::vector<StampedPose>& poses, TrajectoryFormat format,
+                    const std::string& where) {
+  for (const StampedPose& pose : poses) {
+    if (!std::isfinite(pose.timestamp)) throw Error(where, "a timestamp is not finite", "a number");
+    checked_pose(pose.world_from_cam.matrix(), where);
+  }
+  const bool stamped = format == TrajectoryFormat::tum || format == TrajectoryFormat::realestate10k;
+  if (stamped && !differ(poses)) {
+    throw Error(where, "two poses have one timestamp", "each timestamp once");
+  }
 }
 
 std::string to_text(const std::vector<StampedPose>& poses, TrajectoryFormat format,
                     const std::string& where) {
+  check_writable(poses, format, where);
   std::string text;
   if (format == TrajectoryFormat::tum) text = "# timestamp tx ty tz qx qy qz qw, camera-to-world\n";
   if (format == TrajectoryFormat::realestate10k) text = "https://pixelsynth.invalid/trajectory\n";
@@ -215,8 +267,6 @@ std::string to_text(const std::vector<StampedPose>& poses, TrajectoryFormat form
   const bool numbered = are_numbers(poses, least);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const StampedPose& pose = poses[i];
-    if (!std::isfinite(pose.timestamp)) throw Error(where, "a timestamp is not finite", "a number");
-    checked_pose(pose.world_from_cam.matrix(), where);
     if (format == TrajectoryFormat::tum) append_tum(text, pose);
     const double number = numbered ? pose.timestamp : static_cast<double>(i) + least;
     if (format == TrajectoryFormat::colmap_images) append_colmap(text, pose, number);
@@ -231,23 +281,10 @@ std::string to_text(const std::vector<StampedPose>& poses, TrajectoryFormat form
 
 std::vector<StampedPose> parse_trajectory(std::string_view bytes, const std::string& name) {
   return guarded(name, [&] {
-    const TrajectoryFormat format = format_of(bytes, name);
     LineReader lines(bytes, name);
-    std::vector<StampedPose> poses;
-    std::string_view line;
-    if (format == TrajectoryFormat::colmap_images) {
-      poses = parse_colmap(lines);
-    } else {
-      while (lines.next_content(line)) {
-        if (format == TrajectoryFormat::tum) poses.push_back(parse_tum_line(line, lines));
-        if (format == TrajectoryFormat::open3d_log) poses.push_back(parse_log_pose(line, lines));
-        if (format == TrajectoryFormat::realestate10k && line.substr(0, 4) != "http") {
-          poses.push_back(parse_realestate_line(line, lines));
-        }
-      }
-    }
-    if (poses.empty()) throw Error(name, "holds no pose", "one at least");
-    return poses;
+    PoseList poses;
+    parse_poses(format_of(bytes, name), lines, poses);
+    return poses.take(name);
   });
 }
 

@@ -26,7 +26,7 @@ enum class TrajectoryFormat { tum, colmap_images, open3d_log, realestate10k };
 /// (`stamp tx ty tz qx qy qz qw`, camera-to-world), COLMAP images.txt (world-to-camera), Open3D
 /// `.log` (camera-to-world 4x4), RealEstate10K (19 columns, world-to-camera 3x4).
 /// Throws ps::Error with the line's number on NaN, infinities, non-rotations, zero quaternions,
-/// missing columns, and when there is no pose at all.
+/// missing columns, a timestamp that comes twice, and when there is no pose at all.
 std::vector<StampedPose> read_trajectory(const std::filesystem::path& path);
 
 /// @brief The same from a file's bytes; `name` stands in messages and helps to tell the format.
@@ -36,7 +36,8 @@ std::vector<StampedPose> parse_trajectory(std::string_view bytes, const std::str
 /// empty point lines, and names made from the ids (00003.png) where there is none. Its ids and
 /// Open3D's frame numbers are the timestamps where these are whole and differ, else 1, 2, ... and
 /// 0, 1, ...
-/// Throws ps::Error when a pose is unsound, or for RealEstate10K lacks normalised_intrinsics.
+/// Throws ps::Error when a pose is unsound, or for RealEstate10K lacks normalised_intrinsics; for
+/// TUM and RealEstate10K also when two poses have one timestamp.
 void write_trajectory(const std::filesystem::path& path, const std::vector<StampedPose>& poses,
                       TrajectoryFormat format = TrajectoryFormat::tum);
 

@@ -58,11 +58,11 @@ TEST(Trajectory, tum_is_camera_to_world_with_w_last) {
 }
 
 TEST(Trajectory, colmap_is_world_to_camera_with_w_first) {
-  const std::string line = "5 0.70710678 0 0 0.70710678 1 2 3 1 a photo.jpg";
+  const std::string line = " 0.70710678 0 0 0.70710678 1 2 3 1 a photo.jpg";
   for (const std::string& points :
        {std::string("\n\n"), std::string("\n1.5 2.5 -1 4 5 6\n"), std::string("\n")}) {
-    const auto poses =
-        parse_trajectory("# IMAGE_ID ...\n" + line + points + line + points, "images.txt");
+    const std::string text = "# IMAGE_ID ...\n4" + line + points + "5" + line + points;
+    const auto poses = parse_trajectory(text, "images.txt");
     ASSERT_EQ(poses.size(), 2u);
     EXPECT_EQ(poses[1].name, "a photo.jpg");
     EXPECT_EQ(poses[1].timestamp, 5);
@@ -121,6 +121,18 @@ TEST(Trajectory, poses_that_are_none_are_named_with_their_line) {
   EXPECT_TRUE(has(message("1 1 0 0 0 0 0 0 1\n", "images.txt"), "images.txt:1: no image name"));
 }
 
+TEST(Trajectory, a_timestamp_that_comes_twice_is_named_with_its_line) {
+  EXPECT_TRUE(has(message("7.25 0 0 0 0 0 0 1\n# 7.25\n8 0 0 0 0 0 0 1\n7.25 1 0 0 0 0 0 1\n"),
+                  "t:4: timestamp 7.25 is there already"));
+  EXPECT_TRUE(has(message("3 1 0 0 0 0 0 0 1 a\n\n3 1 0 0 0 0 0 0 1 b\n\n", "images.txt"),
+                  "images.txt:3: timestamp 3 is there already"));
+  const std::string matrix = "1 0 0 4\n0 1 0 5\n0 0 1 6\n0 0 0 1\n";
+  EXPECT_TRUE(has(message("0 0 1\n" + matrix + "0 0 2\n" + matrix, "t.log"),
+                  "t.log:6: timestamp 0 is there already"));
+  const std::string shot = "5 .9 1.4 .5 .5 0 0 1 0 0 4 0 1 0 5 0 0 1 6\n";
+  EXPECT_TRUE(has(message("https://x\n" + shot + shot), "t:3: timestamp 5 is there already"));
+}
+
 TEST(Trajectory, matrices_that_are_no_rotations_are_refused) {
   EXPECT_TRUE(has(message("0 0 1\n2 0 0 4\n0 2 0 5\n0 0 2 6\n0 0 0 1\n"), "not a rotation"));
   EXPECT_TRUE(has(message("0 0 1\n1 0 0 4\n0 1 0 5\n0 0 -1 6\n0 0 0 1\n"), "not a rotation"));
@@ -155,6 +167,9 @@ TEST(Trajectory, unsound_poses_are_not_written) {
   poses = random_poses(3);
   poses[2].timestamp = std::nan("");
   error_of([&] { write_trajectory(folder / "t.txt", poses); });
+  poses = random_poses(3);
+  poses[2].timestamp = poses[0].timestamp;
+  EXPECT_TRUE(has(error_of([&] { write_trajectory(folder / "t.txt", poses); }), "one timestamp"));
   poses = random_poses(3);
   poses[2].normalised_intrinsics.reset();
   EXPECT_TRUE(has(
