@@ -40,6 +40,17 @@ Turn turn_at(const std::string& name, double t) {
   return {t * end.yaw, t * end.pitch};
 }
 
+/// How far a closed path is at a frame, from 0 to 1: in even steps to a quarter of it, on to three
+/// quarters and back, so that its two sides are among the frames, however few.
+double closed_share(int frame, int frames) {
+  const int last = frames - 1;
+  const int left = std::max(1, static_cast<int>(std::lround(last / 4.0)));
+  const int right = std::max(left + 1, last - left);
+  if (frame <= left) return 0.25 * frame / left;
+  if (frame <= right) return 0.25 + 0.5 * (frame - left) / (right - left);
+  return 0.75 + 0.25 * (frame - right) / (last - right);
+}
+
 /// Camera y points down, so Ry(+) turns right and Rx(+) looks up.
 Pose turned(const Pose& start, const Turn& turn, const PathOptions& options) {
   const Eigen::Matrix3d rotation =
@@ -131,13 +142,14 @@ const std::vector<std::string>& path_names() {
 std::vector<Pose> camera_path(const std::string& name, const Pose& start,
                               const PathOptions& options) {
   check_options(name, options);
+  const bool closed = name == "circle" || name == "sway";
   std::vector<Pose> poses = {start};
   for (int i = 1; i < options.frames; ++i) {
-    const double t = static_cast<double>(i) / (options.frames - 1);
-    poses.push_back(turned(start, turn_at(name, t), options));
+    const double even = static_cast<double>(i) / (options.frames - 1);
+    const double t = closed ? closed_share(i, options.frames) : even;
+    // Exactly the start, not sin(2 pi) from it.
+    poses.push_back(closed && t == 1 ? start : turned(start, turn_at(name, t), options));
   }
-  const bool closed = name == "circle" || name == "sway";
-  if (closed) poses.back() = start;  // exactly: sin(2 pi) is not quite 0
   return poses;
 }
 

@@ -37,9 +37,10 @@ const std::vector<std::string>& path_names();
 /// looking range_horizontal to the left of the start, a diagonal ends at half of both ranges; steps
 /// are even. `sway` swings to the left extreme, through the start to the right one, and back.
 /// `circle` goes once round an ellipse through the start, as wide as both horizontal extremes and
-/// as high as the lower one: left, down, right and back. Both end where they started. A path of one
-/// frame is the start. Throws ps::Error naming the choices when `name` is none of them, and when
-/// frames < 1, a range is negative or beyond pi, or orbit_radius is negative or not finite.
+/// as high as the lower one: left, down, right and back. Both extremes are always among their
+/// frames, and from four frames on both end where they started. A path of one frame is the start.
+/// Throws ps::Error naming the choices when `name` is none of them, and when frames < 1, a range is
+/// negative or beyond pi, or orbit_radius is negative or not finite.
 std::vector<Pose> camera_path(const std::string& name, const Pose& start,
                               const PathOptions& options = {});
 

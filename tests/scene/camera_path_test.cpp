@@ -117,6 +117,37 @@ TEST(CameraPath, sway_reaches_both_extremes) {
   EXPECT_NEAR(axis_in_start(poses[30]).x(), std::sin(0.6), 1e-9);
 }
 
+TEST(CameraPath, few_frames_of_a_closed_path_show_both_extremes) {
+  for (const char* name : {"circle", "sway"}) {
+    for (int frames = 3; frames < 20; ++frames) {
+      double left = 0, right = 0;
+      const std::vector<Pose> poses = camera_path(name, kStart, {frames, 0.6, 0});
+      for (const Pose& pose : poses) {
+        const Eigen::Vector3d axis = axis_in_start(pose);
+        left = std::min(left, std::atan2(axis.x(), axis.z()));
+        right = std::max(right, std::atan2(axis.x(), axis.z()));
+      }
+      EXPECT_NEAR(left, -0.6, 1e-9) << name << " " << frames;
+      EXPECT_NEAR(right, 0.6, 1e-9) << name << " " << frames;
+      EXPECT_EQ(poses.back().matrix() == kStart.matrix(), frames > 3) << name << " " << frames;
+    }
+    EXPECT_GT(angle_between(camera_path(name, kStart, {2}).back(), kStart), 0.5) << name;
+  }
+}
+
+TEST(CameraPath, neighbouring_frames_of_a_closed_path_are_near) {
+  for (const char* name : {"circle", "sway"}) {
+    for (const int frames : {64, 65, 66, 67}) {
+      const std::vector<Pose> poses = camera_path(name, kStart, {frames, 0.6, 0.3});
+      const double most =
+          1.1 * 2 * 3.1416 / (frames - 1) * 0.6;  // the sine's steepest, and a tenth
+      for (std::size_t i = 1; i < poses.size(); ++i) {
+        EXPECT_LT(angle_between(poses[i - 1], poses[i]), most) << name << " " << i;
+      }
+    }
+  }
+}
+
 TEST(CameraPath, without_an_orbit_the_camera_turns_on_the_spot) {
   for (const Pose& pose : camera_path("circle", kStart)) {
     EXPECT_NEAR((pose.translation() - kStart.translation()).norm(), 0, 1e-12);
