@@ -19,8 +19,8 @@ bool is_pcd(const std::filesystem::path& path) {
 
 }  // namespace
 
-Cloud read_cloud(const std::filesystem::path& path) {
-  return is_pcd(path) ? read_pcd(path) : read_ply(path);
+Cloud read_cloud(const std::filesystem::path& path, std::size_t* dropped) {
+  return is_pcd(path) ? read_pcd(path, dropped) : read_ply(path, dropped);
 }
 
 void write_cloud(const std::filesystem::path& path, const Cloud& cloud, const std::string& up,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 
@@ -8,8 +9,10 @@
 
 namespace ps {
 
-/// @brief Reads PLY or PCD, by extension. Throws ps::Error when it is neither, and as they do.
-Cloud read_cloud(const std::filesystem::path& path);
+/// @brief Reads PLY or PCD, by extension; points that are not finite are dropped. Throws ps::Error
+/// when it is neither, and as they do.
+/// @param dropped  when given, told how many points were not finite
+Cloud read_cloud(const std::filesystem::path& path, std::size_t* dropped = nullptr);
 
 /// @brief Writes PLY or PCD, by extension. The file appears whole or not at all.
 /// @param up          the world's axis that points up, which the header notes; empty = not known

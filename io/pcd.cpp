@@ -187,6 +187,14 @@ Cloud parse_compressed(const Header& header, const LineReader& lines) {
   return gather(points, fields, false);
 }
 
+Cloud parse_data(const Header& header, LineReader& lines) {
+  if (header.data == "ascii") return parse_ascii(header, lines);
+  if (header.data == "binary") return parse_binary(header, lines);
+  if (header.data == "binary_compressed") return parse_compressed(header, lines);
+  throw Error(lines.where(), "DATA " + in_quotes(header.data),
+              "ascii, binary or binary_compressed");
+}
+
 // --- writing ------------------------------------------------------------------------------------
 
 /// Where each field of a point is: once for records, once for planes.
@@ -249,20 +257,19 @@ std::string header_text(std::size_t points, bool compressed, const std::string& 
 
 }  // namespace
 
-Cloud parse_pcd(std::string_view bytes, const std::string& name) {
+Cloud parse_pcd(std::string_view bytes, const std::string& name, std::size_t* dropped) {
   return guarded(name, [&] {
     LineReader lines(bytes, name);
     const Header header = parse_header(lines);
-    if (header.data == "ascii") return parse_ascii(header, lines);
-    if (header.data == "binary") return parse_binary(header, lines);
-    if (header.data == "binary_compressed") return parse_compressed(header, lines);
-    throw Error(lines.where(), "DATA " + in_quotes(header.data),
-                "ascii, binary or binary_compressed");
+    Cloud cloud = parse_data(header, lines);
+    if (dropped != nullptr) *dropped = *header.points - cloud.size();
+    return cloud;
   });
 }
 
-Cloud read_pcd(const std::filesystem::path& path) {
-  return guarded(path.string(), [&] { return parse_pcd(FileBytes(path).view(), path.string()); });
+Cloud read_pcd(const std::filesystem::path& path, std::size_t* dropped) {
+  return guarded(path.string(),
+                 [&] { return parse_pcd(FileBytes(path).view(), path.string(), dropped); });
 }
 
 void write_pcd(const std::filesystem::path& path, const Cloud& cloud, bool compressed,

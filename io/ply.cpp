@@ -246,17 +246,22 @@ std::string header_text(std::size_t points, const std::string& up) {
 
 }  // namespace
 
-Cloud parse_ply(std::string_view bytes, const std::string& name) {
+Cloud parse_ply(std::string_view bytes, const std::string& name, std::size_t* dropped) {
   return guarded(name, [&] {
     LineReader lines(bytes, name);
     Header header = parse_header(lines);
-    check_coordinates(header.elements.back(), name);
-    return header.ascii ? parse_ascii(header, lines) : parse_binary(header, lines.rest(), name);
+    const Element& vertices = header.elements.back();
+    check_coordinates(vertices, name);
+    Cloud cloud =
+        header.ascii ? parse_ascii(header, lines) : parse_binary(header, lines.rest(), name);
+    if (dropped != nullptr) *dropped = vertices.count - cloud.size();
+    return cloud;
   });
 }
 
-Cloud read_ply(const std::filesystem::path& path) {
-  return guarded(path.string(), [&] { return parse_ply(FileBytes(path).view(), path.string()); });
+Cloud read_ply(const std::filesystem::path& path, std::size_t* dropped) {
+  return guarded(path.string(),
+                 [&] { return parse_ply(FileBytes(path).view(), path.string(), dropped); });
 }
 
 void write_ply(const std::filesystem::path& path, const Cloud& cloud, const std::string& up) {

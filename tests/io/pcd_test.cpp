@@ -62,12 +62,14 @@ TEST(Pcd, extra_fields_arrays_and_padding_are_passed_over) {
   EXPECT_EQ(rgb(cloud[1]), 0x112233u);
 }
 
-TEST(Pcd, rows_of_an_organised_cloud_become_one_and_holes_are_dropped) {
+TEST(Pcd, rows_of_an_organised_cloud_become_one_and_holes_are_dropped_and_counted) {
   std::string bytes = xyz(4, "binary");
   bytes.replace(bytes.find("WIDTH 4\nHEIGHT 1"), 16, "WIDTH 2\nHEIGHT 2");
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const float x : {1.f, nan, 3.f, 4.f}) bytes += raw(x) + raw(x) + raw(x);
-  const Cloud cloud = parse_pcd(bytes, "a.pcd");
+  std::size_t dropped = 0;
+  const Cloud cloud = parse_pcd(bytes, "a.pcd", &dropped);
+  EXPECT_EQ(dropped, 1u);
   EXPECT_EQ(cloud.width, 3u);
   EXPECT_EQ(cloud[1].x, 3.f);
 }

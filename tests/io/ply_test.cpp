@@ -131,12 +131,14 @@ TEST(Ply, elements_and_lists_before_and_among_vertices_are_passed_over) {
   }
 }
 
-TEST(Ply, points_that_are_not_finite_are_dropped) {
+TEST(Ply, points_that_are_not_finite_are_dropped_and_counted) {
   const std::string text = header("ascii",
                                   "element vertex 4\nproperty double x\nproperty double y\n"
                                   "property double z\n");
-  const Cloud cloud = parse_ply(text + "nan 0 0\n1 2 3\n0 -inf 0\n0 0 1e300\n", "a");
+  std::size_t dropped = 0;
+  const Cloud cloud = parse_ply(text + "nan 0 0\n1 2 3\n0 -inf 0\n0 0 1e300\n", "a", &dropped);
   ASSERT_EQ(cloud.size(), 1u);
+  EXPECT_EQ(dropped, 3u);
   EXPECT_EQ(cloud[0].z, 3.f);
   EXPECT_TRUE(cloud.is_dense);
 }
