@@ -30,8 +30,8 @@ void expect_splat_as_reference(const std::filesystem::path& path) {
     LiftOptions options;
     cloud += lift(view, liftable(view.depth, view.intrinsics, options), 0, Origin::observed);
   }
-  const Intrinsics small = resized(folder.intrinsics, folder.intrinsics.width / 3,
-                                   folder.intrinsics.height / 3);
+  const Intrinsics small =
+      resized(folder.intrinsics, folder.intrinsics.width / 3, folder.intrinsics.height / 3);
   const Pose& pose = folder.frames[4].world_from_cam;
   const SplatOptions options;
   const Splat fast = splat(points_view(cloud), small, pose, options);
