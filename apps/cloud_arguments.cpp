@@ -67,9 +67,15 @@ cv::Size parse_size(const std::string& text) {
   return {width, height};
 }
 
-Cloud load_cloud(const CloudArguments& arguments) {
-  Cloud cloud = read_cloud(arguments.cloud);
-  if (cloud.empty()) throw Error(arguments.cloud, "holds no points", "at least one");
+Cloud load_cloud(const CloudArguments& arguments, const Context& context) {
+  std::size_t dropped = 0;
+  Cloud cloud = read_cloud(arguments.cloud, &dropped);
+  const std::string unfinite = std::to_string(dropped) + " points are not finite";
+  if (cloud.empty()) {
+    throw Error(arguments.cloud, dropped > 0 ? "all its " + unfinite : "holds no points",
+                "at least one");
+  }
+  if (dropped > 0) context.warn(arguments.cloud + ": " + unfinite + " and are left out");
   if (arguments.origin == "all") return cloud;
   const Origin wanted = arguments.origin == "observed" ? Origin::observed : Origin::outpainted;
   const auto unwanted = [&](const Point& point) {

@@ -29,9 +29,9 @@ struct CloudArguments {
 /// @brief Parses `640x480`. Throws CLI::ValidationError (wrong usage) on anything else.
 cv::Size parse_size(const std::string& text);
 
-/// @return the points that were asked for. Throws ps::Error when the file is bad or no point is
-/// left.
-Cloud load_cloud(const CloudArguments& arguments);
+/// @return the points that were asked for; warns of points that are not finite, which are left out.
+/// Throws ps::Error when the file is bad or no point is left.
+Cloud load_cloud(const CloudArguments& arguments, const Context& context);
 
 /// @return the file `STEM.NAME` or else `NAME` in the cloud's folder, as `fuse` and `scene` write
 /// them

@@ -33,8 +33,12 @@ class FolderSink : public FrameSink {
   void add(const Splat& frame) override {
     char number[16];
     std::snprintf(number, sizeof number, "%05zu.png", count_++);
-    write_image(folder_.file(std::string("frame_") + number), frame.color);
-    if (options_.depth) write_depth_png(folder_.file(std::string("depth_") + number), frame);
+    folder_.write(std::string("frame_") + number,
+                  [&](const fs::path& file) { write_image(file, frame.color); });
+    if (options_.depth) {
+      folder_.write(std::string("depth_") + number,
+                    [&](const fs::path& file) { write_depth_png(file, frame); });
+    }
   }
 
   void finish(const std::vector<Pose>& poses, const Intrinsics& lens) override {
@@ -42,8 +46,8 @@ class FolderSink : public FrameSink {
     for (const Pose& pose : poses) {
       stamped.push_back({static_cast<double>(stamped.size()), pose, "", {}});
     }
-    write_trajectory(folder_.file("trajectory.txt"), stamped);
-    write_intrinsics(folder_.file("intrinsics.json"), lens);
+    folder_.write("trajectory.txt", [&](const fs::path& file) { write_trajectory(file, stamped); });
+    folder_.write("intrinsics.json", [&](const fs::path& file) { write_intrinsics(file, lens); });
     folder_.commit();
   }
 
@@ -69,6 +73,7 @@ class PictureSink : public FrameSink {
  public:
   PictureSink(const fs::path& path, const SinkOptions& options) : path_(path), options_(options) {
     check_output_file(path, {".png"});
+    if (options.depth) check_output_file(beside(path, "depth.png"), {});
   }
 
   void add(const Splat& frame) override { frame_ = frame; }

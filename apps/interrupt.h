@@ -11,7 +11,8 @@ struct Interrupted : std::exception {
 };
 
 /// @brief From now on the first SIGINT, SIGTERM or SIGHUP is noted instead of ending the program; a
-/// second one ends it at once. For verbs that write.
+/// second one ends it at once. A signal that the caller had ignored (nohup, a job in the background
+/// of a script) stays ignored. For verbs that write.
 void note_interrupts();
 
 void throw_if_interrupted();

@@ -15,15 +15,18 @@ namespace fs = std::filesystem;
 namespace ps::apps {
 namespace {
 
-void check_parent(const fs::path& path) {
-  const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
+/// @param shown  what the path is called in messages
+void check_parent(const fs::path& path, const fs::path& shown) {
+  const auto parent_of = [](const fs::path& p) {
+    return p.has_parent_path() ? p.parent_path() : fs::path(".");
+  };
+  const std::string folder = "the folder " + parent_of(shown).string();
   std::error_code ignored;
-  if (!fs::is_directory(parent, ignored)) {
-    throw Error(path.string(), "the folder " + parent.string() + " does not exist",
-                "a path in an existing folder");
+  if (!fs::is_directory(parent_of(path), ignored)) {
+    throw Error(shown.string(), folder + " does not exist", "a path in an existing folder");
   }
-  if (access(parent.c_str(), W_OK | X_OK) != 0) {
-    throw Error(path.string(), "the folder " + parent.string() + " cannot be written");
+  if (access(parent_of(path).c_str(), W_OK | X_OK) != 0) {
+    throw Error(shown.string(), folder + " cannot be written");
   }
 }
 
@@ -37,13 +40,13 @@ std::string series_of(const fs::path& file) {
   return std::string(name.begin(), first) + '#' + std::string(last, name.end());
 }
 
-/// Runs `task`; failures of the file system become ps::Error, naming `path`.
-template <class Task>
-auto on_files(const fs::path& path, Task task) try {
+/// Runs `task`; failures of the file system become ps::Error.
+/// @param shown  what a path is called in the message
+template <class Task, class Shown>
+auto on_files(Task task, Shown shown) try {
   return task();
 } catch (const fs::filesystem_error& error) {
-  const fs::path& culprit = error.path1().empty() ? path : error.path1();
-  throw Error(culprit.string(), error.code().message());
+  throw Error(shown(error.path1()), error.code().message());
 }
 
 /// Throws ps::Error where merge() would meet a file in place of a folder or the other way round, so
@@ -80,27 +83,28 @@ void merge(const fs::path& from, const fs::path& to) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(const fs::path& target) : target_(target) {
+OutputFolder::OutputFolder(const fs::path& target) : given_(target) {
   std::error_code ignored;
   if (fs::exists(target / "color", ignored) && fs::exists(target / "depth", ignored)) {
     throw Error(target.string(), "holds RGB-D frames, whose trajectory would be replaced",
                 "another output folder");
   }
-  if (!target_.has_filename()) target_ = target_.parent_path();  // OUT/ is OUT
-  if (target_.empty()) throw Error("output", "the folder's name is empty");
-  on_files(target_, [this] {
-    if (fs::exists(target_) && !fs::is_directory(target_)) {
-      throw Error(target_.string(), "is a file", "a folder, or a path where nothing is yet");
-    }
-    const fs::path whole = fs::absolute(target_).lexically_normal();
-    target_ = whole.has_filename() ? whole : whole.parent_path();
-  });
-  check_parent(target_);
+  if (!given_.has_filename()) given_ = given_.parent_path();  // OUT/ is OUT
+  if (given_.empty()) throw Error("output", "the folder's name is empty");
+  const auto given = [this](const fs::path&) { return given_.string(); };
+  on_files(
+      [this] {
+        if (fs::exists(given_) && !fs::is_directory(given_)) {
+          throw Error(given_.string(), "is a file", "a folder, or a path where nothing is yet");
+        }
+        const fs::path whole = fs::absolute(given_).lexically_normal();
+        target_ = whole.has_filename() ? whole : whole.parent_path();
+      },
+      given);
+  check_parent(target_, given_);
   partial_ = target_;
   partial_ += ".partial-" + std::to_string(getpid());
-  std::error_code failure;
-  const bool made = fs::create_directory(partial_, failure);
-  if (failure) throw Error(partial_.string(), failure.message());
+  const bool made = on_files([this] { return fs::create_directory(partial_); }, given);
   if (!made) throw Error(partial_.string(), "is there already, of a run that was ended; remove it");
 }
 
@@ -109,22 +113,41 @@ OutputFolder::~OutputFolder() {
   fs::remove_all(partial_, ignored);
 }
 
-fs::path OutputFolder::file(const std::string& name) {
-  const fs::path path = partial_ / name;
-  on_files(path, [&] { fs::create_directories(path.parent_path()); });
-  return path;
+std::string OutputFolder::shown(const fs::path& path) const {
+  for (const fs::path& place : {partial_, target_}) {
+    const fs::path rest = path.lexically_relative(place);
+    if (rest == ".") return given_.string();
+    if (!rest.empty() && *rest.begin() != "..") return (given_ / rest).string();
+  }
+  return path.empty() ? given_.string() : path.string();
+}
+
+void OutputFolder::write(const std::string& name,
+                         const std::function<void(const fs::path&)>& task) {
+  const fs::path file = partial_ / name;
+  on_files([&] { fs::create_directories(file.parent_path()); },
+           [this](const fs::path& path) { return shown(path); });
+  try {
+    task(file);
+  } catch (const Error& error) {
+    const std::string message = error.what(), where = file.string() + ": ";
+    if (message.rfind(where, 0) != 0) throw;
+    throw Error(shown(file), message.substr(where.size()));
+  }
 }
 
 void OutputFolder::commit() {
-  on_files(target_, [this] {
-    if (fs::is_directory(target_)) {
-      check_merge(partial_, target_);
-      merge(partial_, target_);
-      fs::remove_all(partial_);
-    } else {
-      fs::rename(partial_, target_);
-    }
-  });
+  on_files(
+      [this] {
+        if (fs::is_directory(target_)) {
+          check_merge(partial_, given_);
+          merge(partial_, given_);
+          fs::remove_all(partial_);
+        } else {
+          fs::rename(partial_, target_);
+        }
+      },
+      [this](const fs::path& path) { return shown(path); });
 }
 
 void check_output_file(const fs::path& path, const std::vector<std::string>& extensions) {
@@ -139,7 +162,7 @@ void check_output_file(const fs::path& path, const std::vector<std::string>& ext
   }
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) throw Error(path.string(), "is a folder", "a file");
-  check_parent(path);
+  check_parent(path, path);
 }
 
 std::string extension_of(const fs::path& path) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,12 +23,17 @@ class OutputFolder {
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  /// Where to write a file of this relative name; makes its folder.
-  std::filesystem::path file(const std::string& name);
+  /// Makes the folder of a file of this relative name, and has `task` write it where it is told to.
+  /// A ps::Error of the task leaves with the place that the file would have had.
+  void write(const std::string& name,
+             const std::function<void(const std::filesystem::path&)>& task);
   void commit();  ///< throws ps::Error
 
  private:
-  std::filesystem::path target_;
+  std::string shown(const std::filesystem::path& path) const;
+
+  std::filesystem::path given_;   ///< the target as the user wrote it, for messages
+  std::filesystem::path target_;  ///< the same, absolute
   std::filesystem::path partial_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/program.h"
 
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -22,10 +23,11 @@ void add_common_options(CLI::App& program, Context& context) {
   program.add_flag("-v,--verbose", context.verbose, "Say more on stderr");
   program.add_flag("-q,--quiet", context.quiet, "Say nothing but errors");
   program.add_option("--seed", context.seed, "Seed of everything that is drawn at random")
-      ->type_name("N");
+      ->type_name("N")
+      ->check(whole_in(0, UINT64_MAX));
   program.add_option("--threads", context.threads, "Threads to use; 0 = one for each core")
       ->type_name("N")
-      ->check(in_range(0, 1024));
+      ->check(whole_in(0, 1024));
   program.add_flag("--json", context.json, "Print the report as JSON on stdout");
   program.set_version_flag("--version", "pixelsynth " PS_VERSION);
   program.fallthrough();  // so that these are also taken after the verb
@@ -96,6 +98,18 @@ CLI::Validator in_range(double low, double high) {
     return "'" + text + "' is out of range; expected " + range;
   };
   return CLI::Validator(check, high < kNoBound ? range : "");
+}
+
+CLI::Validator whole_in(std::uint64_t low, std::uint64_t high) {
+  const std::string range = std::to_string(low) + " to " + std::to_string(high);
+  const auto check = [=](const std::string& text) -> std::string {
+    std::uint64_t value = 0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, error] = std::from_chars(text.data(), end, value);
+    if (error == std::errc() && stop == end && value >= low && value <= high) return "";
+    return "'" + text + "' is not right; expected a whole number from " + range;
+  };
+  return CLI::Validator(check, high < UINT64_MAX ? range : "");
 }
 
 int report_failure() noexcept try { throw; } catch (const Interrupted&) {

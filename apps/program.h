@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 
 #include "apps/context.h"
 
@@ -17,6 +18,9 @@ int report_failure() noexcept;
 
 /// @brief Checks that an option is a finite number in [low, high]; CLI::Range lets NaN pass.
 CLI::Validator in_range(double low, double high);
+
+/// @brief Checks that an option is a whole number in [low, high]; CLI11 takes -1 for 2^64 - 1.
+CLI::Validator whole_in(std::uint64_t low, std::uint64_t high);
 
 /// The highest value of options without a natural bound.
 constexpr double kNoBound = 1e9;

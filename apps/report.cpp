@@ -35,6 +35,13 @@ Json value_of(const CLI::Option& option) {
   return values;
 }
 
+/// The most memory this process has held so far.
+double peak_memory_mib() {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
 }  // namespace
 
 Json settings_of(const CLI::App& verb, const Context& context) {
@@ -90,16 +97,23 @@ void print_report(const Context& context, const Json& report) {
   }
 }
 
-double peak_memory_mib() {
-  rusage usage = {};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
-}
-
 double Stopwatch::seconds() const {
   using Seconds = std::chrono::duration<double>;
   const double s = Seconds(std::chrono::steady_clock::now() - start_).count();
   return std::round(s * 1000) / 1000;
+}
+
+void add_costs(Json& report, const Stopwatch& total) {
+  report["seconds"]["total"] = total.seconds();
+  report["peak_memory_mib"] = peak_memory_mib();
+}
+
+void end_run(const Context& context, const Json& report, const std::string& output,
+             const std::string& what) {
+  print_report(context, report);
+  char seconds[32];
+  std::snprintf(seconds, sizeof seconds, " in %.1f s", report["seconds"]["total"].get<double>());
+  context.say(output + ": " + what + seconds);
 }
 
 }  // namespace ps::apps

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "apps/context.h"
 #include "libps/geometry/camera.h"
@@ -31,9 +32,6 @@ void write_json(const std::filesystem::path& path, const Json& json);
 /// @brief Prints a report on stdout if the user asked for it. Throws ps::Error when that fails.
 void print_report(const Context& context, const Json& report);
 
-/// @return the most memory this process has held so far, MiB
-double peak_memory_mib();
-
 /// Seconds since it was made, to the millisecond.
 class Stopwatch {
  public:
@@ -42,5 +40,13 @@ class Stopwatch {
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
+
+/// @brief Adds to a report what the run took: seconds.total and peak_memory_mib.
+void add_costs(Json& report, const Stopwatch& total);
+
+/// @brief The end of a run that wrote something: prints the report, with costs, if the user asked
+/// for it, and says `OUTPUT: WHAT in 1.2 s`. Throws ps::Error as print_report() does.
+void end_run(const Context& context, const Json& report, const std::string& output,
+             const std::string& what);
 
 }  // namespace ps::apps

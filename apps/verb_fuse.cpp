@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <atomic>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <set>
+#include <sstream>
 #include <system_error>
 
 #include "apps/frame_list.h"
 #include "apps/interrupt.h"
+#include "apps/lift_arguments.h"
 #include "apps/output.h"
 #include "apps/program.h"
 #include "apps/progress.h"
@@ -48,13 +51,13 @@ void add_input_options(CLI::App& verb, FuseArguments& a) {
       ->type_name("A:B");
   verb.add_option("--every", a.choice.every, "Only every Nth of these frames of each folder")
       ->type_name("N")
-      ->check(in_range(1, 1000000));
+      ->check(whole_in(1, 1000000));
   verb.add_option(
           "--hold-out", a.choice.hold_out,
           "Leave out every Nth of what is left, to compare with: of each folder's frames, "
           "counted from 0, those whose number modulo N is N/2 (10: 5, 15, 25, ...); 0 = none")
       ->type_name("N")
-      ->check(in_range(0, 1000000));
+      ->check(whole_in(0, 1000000));
   verb.add_option("--depth-scale", a.depth_scale, "Units of the depth files in a metre")
       ->type_name("S")
       ->check(in_range(1e-6, kNoBound));
@@ -62,17 +65,7 @@ void add_input_options(CLI::App& verb, FuseArguments& a) {
 
 void add_cloud_options(CLI::App& verb, SceneCloudOptions& o) {
   const auto at_least_0 = in_range(0, kNoBound);
-  verb.add_option("--min-depth", o.lift.min_depth, "Skip what is nearer, metres")
-      ->type_name("M")
-      ->check(at_least_0);
-  verb.add_option("--max-depth", o.lift.max_depth, "Skip what is farther, metres")
-      ->type_name("M")
-      ->check(at_least_0);
-  verb.add_option("--edge-footprints", o.lift.edge_footprints,
-                  "Drop a pixel that flies at a depth edge: so many pixel widths behind one "
-                  "neighbour and before the opposite; 0 keeps all")
-      ->type_name("F")
-      ->check(at_least_0);
+  add_lift_options(verb, o.lift);
   verb.add_option("--spacing", o.spacing, "Least distance between points, metres; 0 = by footprint")
       ->type_name("M")
       ->check(at_least_0);
@@ -108,10 +101,15 @@ std::vector<RgbdFolder> open_folders(const FuseArguments& a, const Context& cont
   return folders;
 }
 
+/// By their timestamps, or by number where folders have timestamps in common.
 std::vector<StampedPose> poses_of(const std::vector<ChosenFrame>& frames) {
+  std::set<double> stamps;
+  for (const ChosenFrame& chosen : frames) stamps.insert(chosen.frame.timestamp);
+  const bool differ = stamps.size() == frames.size();
   std::vector<StampedPose> poses;
   for (const ChosenFrame& chosen : frames) {
-    poses.push_back({chosen.frame.timestamp, chosen.frame.world_from_cam, "", {}});
+    const double stamp = differ ? chosen.frame.timestamp : static_cast<double>(poses.size());
+    poses.push_back({stamp, chosen.frame.world_from_cam, "", {}});
   }
   return poses;
 }
@@ -156,6 +154,7 @@ void write_all(const FuseArguments& a, const Cloud& cloud, const FrameList& fram
 Json report_of(const FuseReport& fused, const FrameList& frames, const Cloud& cloud) {
   Json report = summary_of(cloud);
   report["views"] = fused.views;
+  report["without_depth"] = fused.empty;
   report["held_out"] = frames.held_out.size();
   report["pixels"] = {{"lifted", fused.pixels.lifted},
                       {"explained", fused.pixels.explained},
@@ -167,53 +166,86 @@ Json report_of(const FuseReport& fused, const FrameList& frames, const Cloud& cl
   return report;
 }
 
-void run_fuse(const FuseArguments& a, const CLI::App& verb, const Context& context) {
-  FuseArguments resolved = a;
-  if (!a.frames.empty()) parse_frames(a.frames, resolved.choice);
-  resolved.fuse.cloud.average = !a.no_average;
-  resolved.fuse.remove_contradicted = !a.keep_contradicted;
+/// All that the command line alone can tell. @return the arguments, with what follows from others
+FuseArguments resolved(const FuseArguments& given) {
+  FuseArguments a = given;
+  if (!a.frames.empty()) parse_frames(a.frames, a.choice);
+  if (a.choice.hold_out == 1) {
+    throw CLI::ValidationError("--hold-out", "1 leaves no frame; expected 0 (none) or 2 and more");
+  }
+  check_depth_range(a.fuse.cloud.lift);
+  a.fuse.cloud.average = !a.no_average;
+  a.fuse.remove_contradicted = !a.keep_contradicted;
   check_outputs(a.output);
   if (a.compress && extension_of(a.output) != ".pcd") {
     throw CLI::ValidationError("--compress", "a .ply is never compressed; -o FILE.pcd is");
   }
-  note_interrupts();
-  const Stopwatch total;
-  const std::vector<RgbdFolder> folders = open_folders(a, context);
-  const FrameList frames = choose_frames(folders, resolved.choice);
-  if (frames.used.empty()) throw Error(a.folders.front(), "no frame is left by --frames");
+  return a;
+}
 
-  std::atomic<std::size_t> scaled_depths{0};  // fuse() loads in the background
+FrameList choose_some_frames(const FuseArguments& a, const std::vector<RgbdFolder>& folders) {
+  FrameList frames = choose_frames(folders, a.choice);
+  if (!frames.used.empty()) return frames;
+  double first = folders.front().frames.front().timestamp, last = first;
+  for (const RgbdFolder& folder : folders) {
+    first = std::min(first, folder.frames.front().timestamp);
+    last = std::max(last, folder.frames.back().timestamp);
+  }
+  std::ostringstream range;
+  range.precision(17);
+  range << "a range within " << first << ":" << last;
+  throw Error("--frames", "no frame is in " + a.frames, range.str());
+}
+
+Cloud fuse_frames(const FuseArguments& a, const FrameList& frames, const Context& context,
+                  FuseReport* report) {
+  std::atomic<std::size_t> scaled{0};  // fuse() loads in the background
   const ViewSource source = {frames.used.size(), [&](std::size_t i) {
                                const ChosenFrame& chosen = frames.used[i];
-                               bool scaled = false;
+                               FrameNotes notes;
                                View view =
-                                   load_frame(*chosen.folder, chosen.frame, a.depth_scale, &scaled);
-                               scaled_depths += scaled ? 1 : 0;
+                                   load_frame(*chosen.folder, chosen.frame, a.depth_scale, &notes);
+                               scaled += notes.scaled ? 1 : 0;
                                return view;
                              }};
-  FuseReport fused;
   Cloud cloud;
   {
     Progress progress(context, "fuse", source.count);
-    cloud = fuse(source, resolved.fuse, &fused, [&](std::size_t done, std::size_t) {
+    cloud = fuse(source, a.fuse, report, [&](std::size_t done, std::size_t) {
       progress.update(done);
       return true;
     });
   }
   throw_if_interrupted();
-  if (scaled_depths > 0) {
-    context.warn(std::to_string(scaled_depths) +
+  if (report->views == 0) {
+    throw Error(a.folders.front(), "no frame has any depth", "depth that is not 0");
+  }
+  if (cloud.empty()) {
+    throw Error(a.folders.front(), "no pixel can be lifted", "depth in the range asked for");
+  }
+  if (report->empty > 0) {
+    context.warn(std::to_string(report->empty) + " frames have no depth at all and are left out");
+  }
+  if (scaled > 0) {
+    context.warn(std::to_string(scaled) +
                  " depth images are of another size than their photos; scaled to the photos' size");
   }
+  return cloud;
+}
+
+void run_fuse(const FuseArguments& given, const CLI::App& verb, const Context& context) {
+  const FuseArguments a = resolved(given);
+  note_interrupts();
+  const Stopwatch total;
+  const std::vector<RgbdFolder> folders = open_folders(a, context);
+  const FrameList frames = choose_some_frames(a, folders);
+  FuseReport fused;
+  const Cloud cloud = fuse_frames(a, frames, context, &fused);
   Json report = report_of(fused, frames, cloud);
-  report["seconds"]["total"] = total.seconds();
-  report["peak_memory_mib"] = peak_memory_mib();
+  add_costs(report, total);
   write_all(a, cloud, frames, settings_of(verb, context), report);
-  print_report(context, report);
-  char line[128];
-  std::snprintf(line, sizeof line, ": %zu points from %zu views in %.1f s", cloud.size(),
-                fused.views, total.seconds());
-  context.say(a.output + line);
+  end_run(context, report, a.output,
+          std::to_string(cloud.size()) + " points from " + std::to_string(fused.views) + " views");
 }
 
 }  // namespace

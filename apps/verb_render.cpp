@@ -50,7 +50,7 @@ void add_path_options(CLI::App& verb, RenderArguments& a) {
       ->type_name("FILE");
   verb.add_option("--frames", a.frames, "Number of frames; 0 = 64, or all poses of a file")
       ->type_name("N")
-      ->check(in_range(0, 1000000));
+      ->check(whole_in(0, 1000000));
   verb.add_option("--yaw", a.yaw, "Degrees a built-in path turns to either side")
       ->type_name("DEG")
       ->check(in_range(0, 180));
@@ -72,12 +72,12 @@ void add_picture_options(CLI::App& verb, RenderArguments& a) {
   verb.add_option("--points-per-pixel", a.splat.points_per_pixel,
                   "Only the nearest so many points of a pixel count")
       ->type_name("N")
-      ->check(in_range(1, 65536));
+      ->check(whole_in(1, 65536));
   verb.add_option("--background", a.background, "Colour where no point falls, 0 to 255 each")
       ->type_name("R,G,B")
       ->delimiter(',')
       ->expected(3)
-      ->check(in_range(0, 255));
+      ->check(whole_in(0, 255));
   verb.add_flag("--no-renormalise", a.no_renormalise,
                 "Let the background shine between points, as published");
   verb.add_flag("--depth", a.sink.depth, "Also write depth: 16-bit PNG in millimetres, 0 = none");
@@ -178,7 +178,7 @@ void run_render(const RenderArguments& a, const Context& context) {
   if (!a.cloud.size.empty()) parse_size(a.cloud.size);  // before the work
   note_interrupts();
   const Stopwatch total;
-  const Cloud cloud = load_cloud(a.cloud);
+  const Cloud cloud = load_cloud(a.cloud, context);
   const double load_seconds = total.seconds();
   const Shot shot = plan(a, cloud, context);
   const cv::Size size(shot.lens.width, shot.lens.height);
@@ -187,19 +187,17 @@ void run_render(const RenderArguments& a, const Context& context) {
   sink->finish(shot.poses, shot.lens);
 
   if (drawn.covered == 0) context.warn("no point falls into any frame; another --start may do");
-  print_report(
-      context,
-      {{"output", a.output},
-       {"points", cloud.size()},
-       {"frames", shot.poses.size()},
-       {"lens", to_json(shot.lens)},
-       {"covered_share", drawn.covered},
-       {"seconds", {{"total", total.seconds()}, {"load", load_seconds}, {"splat", drawn.seconds}}},
-       {"peak_memory_mib", peak_memory_mib()}});
-  char line[160];
-  std::snprintf(line, sizeof line, ": %zu frames of %dx%d from %zu points in %.1f s",
-                shot.poses.size(), size.width, size.height, cloud.size(), total.seconds());
-  context.say(a.output + line);
+  Json report = {{"output", a.output},
+                 {"points", cloud.size()},
+                 {"frames", shot.poses.size()},
+                 {"lens", to_json(shot.lens)},
+                 {"covered_share", drawn.covered},
+                 {"seconds", {{"load", load_seconds}, {"splat", drawn.seconds}}}};
+  add_costs(report, total);
+  char what[96];
+  std::snprintf(what, sizeof what, "%zu frames of %dx%d from %zu points", shot.poses.size(),
+                size.width, size.height, cloud.size());
+  end_run(context, report, a.output, what);
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
 #include "apps/contact_sheet.h"
 #include "apps/interrupt.h"
+#include "apps/lift_arguments.h"
 #include "apps/output.h"
 #include "apps/program.h"
 #include "apps/progress.h"
@@ -22,6 +23,8 @@
 
 namespace ps::apps {
 namespace {
+
+using Path = std::filesystem::path;
 
 struct SceneArguments {
   std::string photo;
@@ -139,16 +142,18 @@ Json report_of(const Cloud& cloud, const View& view, const std::vector<SceneView
 
 void write_all(OutputFolder& folder, const Cloud& cloud, const View& view,
                const std::vector<SceneView>& views) {
-  write_cloud(folder.file("scene.ply"), cloud, "y");
+  folder.write("scene.ply", [&](const Path& file) { write_cloud(file, cloud, "y"); });
   std::vector<StampedPose> poses;
   for (const SceneView& seen : views) {
     throw_if_interrupted();
-    write_image(folder.file("views/" + seen.name + ".png"), seen.splat.color);
+    folder.write("views/" + seen.name + ".png",
+                 [&](const Path& file) { write_image(file, seen.splat.color); });
     poses.push_back({static_cast<double>(poses.size()), seen.world_from_cam, "", {}});
   }
-  write_trajectory(folder.file("trajectory.txt"), poses);
-  write_intrinsics(folder.file("intrinsics.json"), view.intrinsics);
-  write_image(folder.file("preview.png"), preview_of(views));
+  folder.write("trajectory.txt", [&](const Path& file) { write_trajectory(file, poses); });
+  folder.write("intrinsics.json",
+               [&](const Path& file) { write_intrinsics(file, view.intrinsics); });
+  folder.write("preview.png", [&](const Path& file) { write_image(file, preview_of(views)); });
 }
 
 void check_networks(const SceneArguments& a) {
@@ -164,6 +169,7 @@ void check_networks(const SceneArguments& a) {
 
 void run_scene(const SceneArguments& a, const CLI::App& verb, const Context& context) {
   check_networks(a);
+  check_depth_range(a.lift);
   note_interrupts();
   const Stopwatch total;
   OutputFolder folder(a.output);
@@ -173,17 +179,14 @@ void run_scene(const SceneArguments& a, const CLI::App& verb, const Context& con
   const std::vector<SceneView> views = render_views(cloud, view.intrinsics, context);
   write_all(folder, cloud, view, views);
   Json report = report_of(cloud, view, views);
-  report["seconds"] = {{"total", total.seconds()}};
-  report["peak_memory_mib"] = peak_memory_mib();
-  write_json(folder.file("settings.json"), settings_of(verb, context));
-  write_json(folder.file("report.json"), report);
+  add_costs(report, total);
+  const Json settings = settings_of(verb, context);
+  folder.write("settings.json", [&](const Path& file) { write_json(file, settings); });
+  folder.write("report.json", [&](const Path& file) { write_json(file, report); });
   throw_if_interrupted();
   folder.commit();
-  print_report(context, report);
-  char line[96];
-  std::snprintf(line, sizeof line, ": %zu points, %zu views in %.1f s", cloud.size(), views.size(),
-                total.seconds());
-  context.say(a.output + line);
+  end_run(context, report, a.output,
+          std::to_string(cloud.size()) + " points, " + std::to_string(views.size()) + " views");
 }
 
 void add_options(CLI::App& verb, SceneArguments& a) {
@@ -207,17 +210,7 @@ void add_options(CLI::App& verb, SceneArguments& a) {
       ->excludes(file)
       ->default_str("");
   verb.add_flag("--no-outpaint", a.no_outpaint, "Invent nothing: only what the photo shows");
-  verb.add_option("--min-depth", a.lift.min_depth, "Skip what is nearer, metres")
-      ->type_name("M")
-      ->check(in_range(0, kNoBound));
-  verb.add_option("--max-depth", a.lift.max_depth, "Skip what is farther, metres")
-      ->type_name("M")
-      ->check(in_range(0, kNoBound));
-  verb.add_option("--edge-footprints", a.lift.edge_footprints,
-                  "Drop a pixel that flies at a depth edge: so many pixel widths behind one "
-                  "neighbour and before the opposite; 0 keeps all")
-      ->type_name("F")
-      ->check(in_range(0, kNoBound));
+  add_lift_options(verb, a.lift);
 }
 
 }  // namespace

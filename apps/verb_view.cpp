@@ -63,7 +63,7 @@ void run_view(const ViewArguments& a, const Context& context) {
     check_output_file(a.screenshot, {".png", ".jpg", ".jpeg"});
     note_interrupts();
   }
-  const Cloud cloud = load_cloud(a.cloud);
+  const Cloud cloud = load_cloud(a.cloud, context);
   const ViewerOptions options = viewer_options(a, cloud, context);
   if (a.screenshot.empty()) {
     const Display display(Display::Need::window);

@@ -105,7 +105,7 @@ void check_scale(double scale, const std::string& name) {
 
 }  // namespace
 
-Depth parse_depth(std::string_view bytes, const std::string& name, double scale) {
+Depth parse_depth(std::string_view bytes, const std::string& name, double scale, NoDepth no_depth) {
   return guarded(name, [&] {
     check_scale(scale, name);
     const bool pfm = bytes.substr(0, 2) == "Pf" || bytes.substr(0, 2) == "PF";
@@ -117,14 +117,17 @@ Depth parse_depth(std::string_view bytes, const std::string& name, double scale)
         any = any || *d > 0;
       }
     }
-    if (!any) throw Error(name, "no pixel has a depth", "at least one that is not 0");
+    if (!any && no_depth == NoDepth::refuse) {
+      throw Error(name, "no pixel has a depth", "at least one that is not 0");
+    }
     return depth;
   });
 }
 
-Depth read_depth(const std::filesystem::path& path, double scale) {
-  return guarded(path.string(),
-                 [&] { return parse_depth(FileBytes(path).view(), path.string(), scale); });
+Depth read_depth(const std::filesystem::path& path, double scale, NoDepth no_depth) {
+  return guarded(path.string(), [&] {
+    return parse_depth(FileBytes(path).view(), path.string(), scale, no_depth);
+  });
 }
 
 void write_depth(const std::filesystem::path& path, const Depth& depth, double scale) {

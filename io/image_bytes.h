@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -28,11 +29,14 @@ void encode_image(const std::filesystem::path& path, const cv::Mat& image);
 /// @return 8-bit BGR as OpenCV's encoders take it; clamped and rounded, NaN is 0
 cv::Mat3b to_bgr8(const Image& image);
 
-/// @return whether one size is the other, resized: sides may differ by a pixel's rounding
+/// @return whether one size is the other, resized: sides may differ by a pixel's rounding, but the
+/// aspects by 2 % at most, as a pixel is much of a small side
 inline bool same_aspect(cv::Size a, cv::Size b) {
-  const double difference =
-      static_cast<double>(a.width) * b.height - static_cast<double>(b.width) * a.height;
-  return std::abs(difference) <= std::max<double>(a.width + a.height, b.width + b.height);
+  const double across = static_cast<double>(a.width) * b.height;
+  const double along = static_cast<double>(b.width) * a.height;
+  const double difference = std::abs(across - along);
+  return difference <= std::max<double>(a.width + a.height, b.width + b.height) &&
+         difference <= 0.02 * std::max(across, along);
 }
 
 }  // namespace ps

@@ -107,6 +107,33 @@ std::string size_of(cv::Size size) {
   return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
 
+/// Ends at the first pixel that has one.
+bool has_depth(const Depth& depth) {
+  return std::any_of(depth.begin(), depth.end(), [](float d) { return d > 0; });
+}
+
+/// Resizes the depth to the photo's size.
+void fit_depth(View& view, const RgbdFrame& frame) {
+  const cv::Size size = view.color.size();
+  if (!same_aspect(view.depth.size(), size)) {
+    throw Error(frame.depth.string(),
+                "depth is " + size_of(view.depth.size()) + ", the photo " + size_of(size),
+                "the same aspect");
+  }
+  cv::resize(view.depth, view.depth, size, 0, 0, cv::INTER_NEAREST_EXACT);
+}
+
+Intrinsics intrinsics_for(cv::Size photo, const RgbdFolder& folder, const RgbdFrame& frame) {
+  const Intrinsics& k = folder.intrinsics;
+  const cv::Size camera(k.width, k.height);
+  if (!same_aspect(camera, photo)) {
+    throw Error(frame.color.string(),
+                "the photo is " + size_of(photo) + ", the intrinsics are for " + size_of(camera),
+                "the same aspect");
+  }
+  return camera == photo ? k : resized(k, photo.width, photo.height);
+}
+
 }  // namespace
 
 RgbdFolder open_rgbd_folder(const fs::path& path, std::size_t* skipped) {
@@ -138,32 +165,22 @@ RgbdFolder open_rgbd_folder(const fs::path& path, std::size_t* skipped) {
 }
 
 View load_frame(const RgbdFolder& folder, const RgbdFrame& frame, double depth_scale,
-                bool* scaled) {
+                FrameNotes* notes) {
   return guarded(frame.color.string(), [&] {
     View view;
     view.world_from_cam = frame.world_from_cam;
     view.color = read_photo(frame.color).color;
-    view.depth = read_depth(frame.depth, depth_scale);
-    const cv::Size size = view.color.size();
-    if (scaled != nullptr) *scaled = view.depth.size() != size;
-    if (view.depth.size() != size) {
-      if (!same_aspect(view.depth.size(), size)) {
-        throw Error(frame.depth.string(),
-                    "depth is " + size_of(view.depth.size()) + ", the photo " + size_of(size),
-                    "the same aspect");
-      }
-      cv::resize(view.depth, view.depth, size, 0, 0, cv::INTER_NEAREST_EXACT);
+    view.depth = read_depth(frame.depth, depth_scale, notes ? NoDepth::allow : NoDepth::refuse);
+    FrameNotes found;
+    found.without_depth = !has_depth(view.depth);
+    if (!found.without_depth) {
+      found.scaled = view.depth.size() != view.color.size();
+      if (found.scaled) fit_depth(view, frame);
+      view.intrinsics = intrinsics_for(view.color.size(), folder, frame);
+      check(view, frame.color.string());
     }
-    const cv::Size camera(folder.intrinsics.width, folder.intrinsics.height);
-    if (!same_aspect(camera, size)) {
-      throw Error(frame.color.string(),
-                  "the photo is " + size_of(size) + ", the intrinsics are for " + size_of(camera),
-                  "the same aspect");
-    }
-    view.intrinsics =
-        camera == size ? folder.intrinsics : resized(folder.intrinsics, size.width, size.height);
-    check(view, frame.color.string());
-    return view;
+    if (notes != nullptr) *notes = found;
+    return found.without_depth ? View() : view;
   });
 }
 

@@ -31,10 +31,16 @@ struct RgbdFolder {
 /// pose are left out and counted in `skipped` when it is given.
 RgbdFolder open_rgbd_folder(const std::filesystem::path& path, std::size_t* skipped = nullptr);
 
+/// What is odd about a frame, and no error.
+struct FrameNotes {
+  bool scaled = false;         ///< the depth was of another size, and is resized
+  bool without_depth = false;  ///< no pixel has a depth; the view is then empty
+};
+
 /// @brief Loads one frame; depth of another size but the same aspect is resized (nearest), of
 /// another aspect is an Error. Depth in the file is metres times depth_scale.
-/// @param scaled  when given, told whether the depth was resized
+/// @param notes  filled, if given; without it, a frame without any depth is an Error
 View load_frame(const RgbdFolder& folder, const RgbdFrame& frame, double depth_scale = 1000,
-                bool* scaled = nullptr);
+                FrameNotes* notes = nullptr);
 
 }  // namespace ps

@@ -50,10 +50,14 @@ Cloud fuse(const ViewSource& source, const FuseOptions& options, FuseReport* rep
     const View view = next.get();
     start_loading(i + 1);
     sum.load_seconds += seconds_since(before_load);
-    const auto before_add = std::chrono::steady_clock::now();
-    accumulate(&sum.pixels, scene.add(view, static_cast<std::uint16_t>(i)));
-    sum.add_seconds += seconds_since(before_add);
-    ++sum.views;
+    if (view.depth.empty()) {
+      ++sum.empty;
+    } else {
+      const auto before_add = std::chrono::steady_clock::now();
+      accumulate(&sum.pixels, scene.add(view, static_cast<std::uint16_t>(i)));
+      sum.add_seconds += seconds_since(before_add);
+      ++sum.views;
+    }
     if (progress && !progress(i + 1, source.count)) throw Error("fuse", "stopped");
   }
   if (options.remove_contradicted) sum.contradicted = scene.remove_contradicted();

@@ -20,6 +20,19 @@ app_test(values_out_of_range_are_wrong_usage [=[
   fails 2 'every' fuse $S/walk -o a.ply --every 0
   fails 2 'fov' scene $S/photo.png --depth $S/depth.png --no-outpaint -o a --fov 180
   fails 2 'threads' --threads -1 fuse $S/walk -o a.ply]=])
+app_test(whole_numbers_are_whole_and_in_range [=[
+  for n in -1 1.5 1e3 x 18446744073709551616; do
+    fails 2 "seed: '$n'.* expected a whole number" --seed $n fuse $S/walk -o a.ply
+  done
+  fails 2 "every: '1.5'.* whole number from 1" fuse $S/walk -o a.ply --every 1.5
+  works --seed 18446744073709551615 fuse $S/walk -o a.ply --every 3
+  grep -q '"seed": 18446744073709551615' a.settings.json]=])
+app_test(options_that_leave_nothing_are_named_with_what_would_be_right [=[
+  fails 2 'hold-out: 1 leaves no frame.* 2 and more' fuse $S/walk -o a.ply --hold-out 1
+  fails 2 'min-depth: 5 is more than --max-depth 2' fuse $S/walk -o a.ply --min-depth 5 --max-depth 2
+  fails 2 'min-depth: 5 is more than --max-depth 2' scene $S/photo.png --depth $S/depth.png --no-outpaint -o a --min-depth 5 --max-depth 2
+  fails 1 'frames: no frame is in 100:.* within 0:6' fuse $S/walk -o a.ply --frames 100:
+  fails 1 'no pixel can be lifted.* range' fuse $S/walk -o a.ply --min-depth 50]=])
 app_test(odd_sizes_and_ranges_are_wrong_usage [=[
   for s in 640 0x10 10x0 axb 10x-5 99999x10 x; do fails 2 'size' render $S/mixed.ply -o a.png --size $s; done
   for f in a:b 5:3 1:2:3 nan:; do fails 2 'frames' fuse $S/walk -o a.ply --frames $f; done
@@ -64,6 +77,8 @@ app_test(outputs_that_cannot_be_are_refused_before_the_work [=[
   fails 1 'b.report.json: is a folder' fuse $S/walk -o b.ply
   mkdir -p s/preview.png
   touch s/views file
+  mkdir c.depth.png
+  fails 1 'c.depth.png: is a folder' render $S/mixed.ply -o c.png --depth
   fails 1 's/.* is a f' -q scene $S/photo.png --depth $S/depth.png --no-outpaint -o s
   fails 1 'is a file' scene $S/photo.png --depth $S/depth.png --no-outpaint -o file]=])
 app_test(bad_photos_fail_with_one_line [=[
@@ -80,18 +95,47 @@ app_test(bad_trajectories_fail_with_one_line [=[
     fails 1 $f render $S/mixed.ply -o a.png --trajectory $S/$f
     fails 1 $f render $S/mixed.ply -o a --start $S/$f
   done]=])
+app_test(a_timestamp_that_comes_twice_fails_with_file_and_line [=[
+  fails 1 'twice.txt:3: timestamp 1 ' render $S/mixed.ply -o a.png --trajectory $S/twice.txt
+  cp -r $S/walk w
+  cp $S/twice.txt w/trajectory.txt
+  fails 1 'w/trajectory.txt:3: timestamp 1 ' fuse w -o a.ply]=])
+app_test(points_that_are_not_finite_are_counted_in_a_warning [=[
+  works render $S/nan.ply -o a.png
+  says 'warning.*nan.ply: 2 points are not finite'
+  fails 1 'nans.ply: all its 2 points are not finite' -q render $S/nans.ply -o b.png]=])
 app_test(bad_tensors_fail_with_one_line [=[
   fails 1 broken probe splat --in $S/broken.safetensors --out a.safetensors
   fails 1 'shapes' probe splat --in $S/misfit.safetensors --out a.safetensors
   fails 1 "no tensor 'x.points'" probe splat --in $S/two.safetensors --prefix x. --out a.safetensors]=])
 app_test(a_folder_without_depth_fails_with_one_line "fails 1 no_depth fuse $S/no_depth -o a.ply")
+app_test(failures_name_the_output_and_no_unfinished_file [=[
+  mkdir -p m/frame_00001.png
+  fails 1 ' m/frame_00001.png: is a folder' -q render $S/mixed.ply -o m
+  ulimit -f 1
+  trap '' XFSZ
+  fails 1 ' r/frame_00000.png: writing failed' -q render $S/mixed.ply -o r
+  fails 1 ' s/scene.ply: writing failed' -q scene $S/photo.png --depth $S/depth.png --no-outpaint -o s]=])
+# env: a script's jobs in the background begin with SIGINT ignored.
 app_test(an_interrupt_leaves_nothing [=[
   for signal in INT TERM; do
-    "$program" render $S/mixed.ply -o a --size 1024x768 --frames 5000 2>"$work/err" & pid=$!
+    env --default-signal=INT "$program" render $S/mixed.ply -o a --size 1024x768 --frames 5000 2>"$work/err" & pid=$!
     sleep 1.5
     find . | grep -q partial || complain "nothing was begun"
     kill -$signal $pid
     wait $pid && complain "an interrupted run succeeded"
     [ "$(grep -c interrupted "$work/err")" -eq 1 ] || complain "it does not say so"
     [ "$(find .)" = . ] || complain "left: $(find . | head)"
+  done]=])
+app_test(a_signal_that_was_ignored_stays_ignored [=[
+  for signal in INT HUP; do
+    trap '' $signal
+    "$program" render $S/mixed.ply -o a --size 512x384 --frames 40 2>"$work/err" & pid=$!
+    for i in $(seq 100); do
+      kill -$signal $pid 2>/dev/null || break
+      sleep 0.05
+    done
+    wait $pid || complain "it ended by $signal"
+    writes a/frame_00039.png
+    rm -r a
   done]=])

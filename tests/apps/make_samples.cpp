@@ -106,6 +106,7 @@ void write_photos(const fs::path& dir) {
   write_depth(dir / "depth.png", view.depth);
   write_depth(dir / "half.png", view.depth(cv::Rect(0, 0, kWidth / 2, kHeight / 2)).clone());
   write_depth(dir / "square.png", view.depth(cv::Rect(0, 0, kHeight, kHeight)).clone());
+  write_depth(dir / "tiny.png", Depth(1, 1, 2.0f));
   write_depth(dir / "zero.png", Depth::zeros(kHeight, kWidth));
   write_intrinsics(dir / "lens.json", view.intrinsics);
   write_intrinsics(dir / "square_lens.json", intrinsics_from_fov(64, 64, 60));
@@ -124,6 +125,8 @@ void write_clouds(const fs::path& dir) {
   write_text(dir / "empty.ply", header + "0" + fields);
   write_text(dir / "promise.ply", header + "1000000000" + fields + "0 0 1\n");
   write_text(dir / "no_color.ply", header + "2" + fields + "0 0 1\n0.5 0.5 2\n");
+  write_text(dir / "nan.ply", header + "3" + fields + "0 0 1\nnan 0 1\n0 0 inf\n");
+  write_text(dir / "nans.ply", header + "2" + fields + "nan 0 1\n0 0 inf\n");
 }
 
 void write_bad_files(const fs::path& dir) {
@@ -132,6 +135,7 @@ void write_bad_files(const fs::path& dir) {
   write_text(dir / "truncated.png", bytes_of(dir / "photo.png").substr(0, 200));
   write_text(dir / "text.png", "this is no picture\n");
   write_text(dir / "nan.txt", "0 nan 0 0 0 0 0 1\n");
+  write_text(dir / "twice.txt", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n");
   write_text(dir / "zero_quaternion.txt", "0 0 0 0 0 0 0 0\n");
   write_text(dir / "mirror.log", "0 0 1\n-1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   write_text(dir / "broken.safetensors", "\x40");

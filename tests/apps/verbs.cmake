@@ -33,6 +33,38 @@ app_test(fuse_does_not_depend_on_the_order_of_folders [=[
   works fuse $S/walk -o c.ply
   cmp a.ply b.ply
   cmp a.ply c.ply]=])
+app_test(fuse_does_not_depend_on_the_order_of_poses_in_a_trajectory [=[
+  cp -r $S/walk w
+  sort -r $S/walk/trajectory.txt > w/trajectory.txt
+  works fuse $S/walk -o a.ply
+  works fuse w -o b.ply
+  cmp a.ply b.ply
+  cmp a.trajectory.txt b.trajectory.txt]=])
+app_test(fuse_numbers_the_frames_of_folders_with_the_same_timestamps [=[
+  works fuse $S/part_a $S/part_a/../part_a -o a.ply
+  grep -v '#' a.trajectory.txt | cut -d' ' -f1 | xargs | grep -qx '0 1 2 3 4 5 6 7'
+  works render a.ply -o r.png]=])
+app_test(fuse_leaves_out_frames_without_depth_with_one_warning [=[
+  cp -r $S/walk w
+  for i in 1 2 4; do cp $S/zero.png w/depth/0000$i.png; done
+  works fuse w -o a.ply
+  is "$(grep -c warning "$work/err")" -eq 1
+  says 'warning: 3 frames have no depth'
+  is "$(json views a.report.json)" -eq 4
+  is "$(json without_depth a.report.json)" -eq 3
+  rm a.*
+  for f in w/depth/*; do cp $S/zero.png $f; done
+  fails 1 'w: no frame has any depth' fuse w -o b.ply]=])
+app_test(fuse_render_and_scene_end_in_the_same_kind_of_line [=[
+  works --json fuse $S/walk -o a.ply
+  says '^a.ply: .* in [0-9.]+ s$'
+  is -n "$(json peak_memory_mib "$work/out")"
+  works --json render a.ply -o r.png
+  says '^r.png: .* in [0-9.]+ s$'
+  is -n "$(json peak_memory_mib "$work/out")"
+  works --json scene $S/photo.png --depth $S/depth.png --no-outpaint -o s
+  says '^s: .* in [0-9.]+ s$'
+  is -n "$(json peak_memory_mib "$work/out")"]=])
 app_test(fuse_frames_are_inclusive_and_every_counts_within_them [=[
   works fuse $S/walk -o a.ply --frames 2:5
   is "$(json views a.report.json)" -eq 4
@@ -78,6 +110,9 @@ app_test(render_follows_every_kind_of_path [=[
     works render $S/mixed.ply -o r.png --trajectory $p --size 40x30
   done
   fails 1 'spiral.*up-left' render $S/mixed.ply -o r --trajectory spiral]=])
+app_test(render_sways_to_both_sides_in_three_frames [=[
+  works render $S/mixed.ply -o r --trajectory sway --size 40x30 --frames 3
+  is "$(md5sum r/frame* | cut -d' ' -f1 | sort -u | wc -l)" -eq 3]=])
 app_test(render_takes_all_poses_of_a_file_or_some [=[
   works render $S/mixed.ply -o r --trajectory $S/walk/trajectory.txt --size 40x30
   is "$(ls r/frame* | wc -l)" -eq 7
@@ -143,6 +178,7 @@ app_test(scene_scales_depth_of_another_size_with_a_warning [=[
   works scene $S/photo.png --depth $S/half.png --fov 70 --no-outpaint -o s
   says 'warning.*48x32.*96x64']=])
 app_test(scene_refuses_depth_of_another_shape "fails 1 'square.png.*aspect' scene $S/photo.png --depth $S/square.png --no-outpaint -o s")
+app_test(scene_refuses_depth_of_a_pixel "fails 1 'tiny.png: is 1x1.*aspect' scene $S/photo.png --depth $S/tiny.png --no-outpaint -o s")
 app_test(scene_refuses_a_lens_of_another_shape "fails 1 'square_lens.*aspect' scene $S/photo.png --depth $S/depth.png --no-outpaint -o s --intrinsics $S/square_lens.json")
 app_test(scene_refuses_depth_without_a_value "fails 1 zero.png scene $S/photo.png --depth $S/zero.png --no-outpaint -o s")
 app_test(scene_refuses_a_photo_as_depth "fails 1 photo.png scene $S/photo.png --depth $S/photo.png --no-outpaint -o s")

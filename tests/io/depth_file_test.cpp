@@ -89,7 +89,10 @@ TEST(DepthFile, other_kinds_of_pixels_are_refused_by_name) {
 TEST(DepthFile, depth_that_is_nowhere_is_an_error) {
   EXPECT_TRUE(has(message(encoded(".png", cv::Mat1w(4, 4, static_cast<ushort>(0)))),
                   "no pixel has a depth"));
-  EXPECT_TRUE(has(message(pfm(false, {-1, 0}, "2 1")), "no pixel has a depth"));
+  const std::string none = pfm(false, {-1, 0}, "2 1");
+  EXPECT_TRUE(has(message(none), "no pixel has a depth"));
+  const Depth allowed = parse_depth(none, "d", 1000, NoDepth::allow);
+  EXPECT_EQ(cv::norm(allowed, depth_of(1, {0, 0}), cv::NORM_INF), 0);
 }
 
 TEST(DepthFile, every_truncation_is_an_error) {

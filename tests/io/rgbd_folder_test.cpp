@@ -2,6 +2,7 @@
 #include "io/rgbd_folder.h"
 
 #include "io/depth_file.h"
+#include "io/image_bytes.h"
 #include "io/intrinsics_file.h"
 #include "io/photo.h"
 #include "tests/io/support.h"
@@ -71,18 +72,58 @@ TEST(RgbdFolder, depth_of_another_size_is_resized_to_the_photo) {
   }
   write_depth(frames / "depth/1.png", small);
   RgbdFolder folder = open_rgbd_folder(frames.path());
-  bool scaled = false;
-  const View view = load_frame(folder, folder.frames[0], 1000, &scaled);
-  EXPECT_TRUE(scaled);
+  FrameNotes notes;
+  const View view = load_frame(folder, folder.frames[0], 1000, &notes);
+  EXPECT_TRUE(notes.scaled);
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < 12; ++x) EXPECT_EQ(view.depth(y, x), small(y / 2, x / 2));
   }
   write_depth(frames / "depth/1.png", Depth(8, 12, 1.f));
-  load_frame(folder, folder.frames[0], 1000, &scaled);
-  EXPECT_FALSE(scaled);
+  load_frame(folder, folder.frames[0], 1000, &notes);
+  EXPECT_FALSE(notes.scaled);
   write_depth(frames / "depth/1.png", Depth(8, 8, 1.f));
   EXPECT_TRUE(
       has(error_of([&] { load_frame(folder, folder.frames[0]); }), "depth is 8x8, the photo 12x8"));
+}
+
+TEST(RgbdFolder, a_few_pixels_of_another_aspect_are_no_resized_depth) {
+  Frames frames;
+  frames.add("1", 1);
+  frames.poses({"1"});
+  const RgbdFolder folder = open_rgbd_folder(frames.path());
+  const auto load = [&](int width, int height) {
+    write_depth(frames / "depth/1.png", Depth(height, width, 1.f));
+    load_frame(folder, folder.frames[0]);
+  };
+  load(3, 2);
+  for (const auto& [width, height] : {std::pair(1, 1), std::pair(2, 1), std::pair(4, 3)}) {
+    const std::string size = std::to_string(width) + "x" + std::to_string(height);
+    EXPECT_TRUE(
+        has(error_of([&, w = width, h = height] { load(w, h); }), "depth is " + size + ", the"));
+  }
+}
+
+TEST(RgbdFolder, sides_may_differ_by_a_pixel_s_rounding) {
+  EXPECT_TRUE(same_aspect({4032, 3024}, {258, 194}));  // 258 x 193.5
+  EXPECT_TRUE(same_aspect({258, 194}, {4032, 3024}));
+  EXPECT_FALSE(same_aspect({4032, 3024}, {258, 196}));
+  EXPECT_FALSE(same_aspect({9, 7}, {4032, 3024}));  // within a pixel, but 4 % off
+  EXPECT_TRUE(same_aspect({1, 1}, {64, 64}));
+}
+
+TEST(RgbdFolder, a_frame_without_depth_is_told_where_asked_else_an_error) {
+  Frames frames;
+  frames.add("1", 1);
+  frames.add("2", 2);
+  frames.poses({"1", "2"});
+  const RgbdFolder folder = open_rgbd_folder(frames.path());
+  write_depth(frames / "depth/1.png", Depth::zeros(8, 12));
+  FrameNotes notes;
+  EXPECT_TRUE(load_frame(folder, folder.frames[0], 1000, &notes).depth.empty());
+  EXPECT_TRUE(notes.without_depth);
+  EXPECT_FALSE(load_frame(folder, folder.frames[1], 1000, &notes).depth.empty());
+  EXPECT_FALSE(notes.without_depth);
+  EXPECT_TRUE(has(error_of([&] { load_frame(folder, folder.frames[0]); }), "no pixel has a depth"));
 }
 
 TEST(RgbdFolder, intrinsics_of_another_size_are_scaled) {

@@ -135,6 +135,27 @@ TEST(Fuse, pure_rotations_are_related_by_the_homography) {
   EXPECT_LT(worst, 0.06);  // half a pixel of these colours, and their rounding to 8 bits
 }
 
+TEST(Fuse, empty_views_are_passed_over_and_counted) {
+  const auto poses = box_world_walk(5);
+  const auto gappy = [&](std::size_t i) {
+    return i % 2 == 1 ? View() : box_world_view(kCamera, poses[i]);
+  };
+  FuseReport report;
+  const Cloud cloud = fuse({poses.size(), gappy}, {}, &report);
+  EXPECT_EQ(report.views, 3u);
+  EXPECT_EQ(report.empty, 2u);
+  // Views keep their numbers.
+  const Cloud expected = fuse(box_world_source({poses[0], poses[2], poses[4]}));
+  ASSERT_EQ(cloud.size(), expected.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    EXPECT_EQ(cloud[i].getVector3fMap(), expected[i].getVector3fMap());
+    EXPECT_EQ(cloud[i].view, 2 * expected[i].view);
+  }
+  const Cloud none = fuse({2, [](std::size_t) { return View(); }}, {}, &report);
+  EXPECT_TRUE(none.empty());
+  EXPECT_EQ(report.views, 0u);
+}
+
 TEST(Fuse, errors_of_a_source_are_passed_on_and_stopping_is_an_error) {
   ViewSource broken = box_world_source(box_world_walk(4));
   const auto load = broken.load;
