@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/outpaint/selection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "libps/core/error.h"
+
+namespace ps::outpaint {
+
+std::vector<int> ranks(const std::vector<double>& values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::vector<int> rank(values.size());
+  for (std::size_t i = 0; i < order.size(); ++i) rank[order[i]] = static_cast<int>(i);
+  return rank;
+}
+
+std::vector<double> totals(const std::vector<Signal>& signals) {
+  if (signals.empty()) throw Error("selection", "no signal", "at least one");
+  const std::size_t count = signals.front().scores.size();
+  std::vector<double> total(count, 0);
+  for (const Signal& signal : signals) {
+    if (signal.scores.size() != count) {
+      throw Error("selection",
+                  "signals of " + std::to_string(count) + " and " +
+                      std::to_string(signal.scores.size()) + " completions",
+                  "one score for each");
+    }
+    for (const double score : signal.scores) {
+      if (std::isnan(score)) throw Error("selection", "a score that is not a number", "numbers");
+    }
+    const std::vector<int> rank = ranks(signal.scores);
+    for (std::size_t i = 0; i < count; ++i) {
+      const int better = signal.higher_is_better ? rank[i] : static_cast<int>(count) - 1 - rank[i];
+      total[i] += static_cast<double>(better) / static_cast<double>(signals.size());
+    }
+  }
+  return total;
+}
+
+std::size_t best_of(const std::vector<double>& totals) {
+  return static_cast<std::size_t>(std::max_element(totals.begin(), totals.end()) - totals.begin());
+}
+
+double entropy(const std::vector<float>& logits) {
+  if (logits.empty()) return 0;
+  const double most = *std::max_element(logits.begin(), logits.end());
+  double sum = 0, weighted = 0;
+  for (const float logit : logits) {
+    const double e = std::exp(logit - most);
+    sum += e;
+    weighted += e * (logit - most);
+  }
+  return std::log(sum) - weighted / sum;
+}
+
+}  // namespace ps::outpaint

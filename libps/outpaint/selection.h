@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace ps::outpaint {
+
+/// @brief One opinion about all completions of a view.
+struct Signal {
+  std::vector<double> scores;  ///< one for each completion
+  bool higher_is_better = true;
+};
+
+/// @return the place of every value in ascending order, from 0; of equal values the first comes
+/// first
+std::vector<int> ranks(const std::vector<double>& values);
+
+/// @brief The total of each completion (SPEC.md 9): the mean over signals of its rank, counted so
+/// that more is better. With the published two, discriminator and classifier entropy, this is their
+/// total. Throws ps::Error when there is no signal, they differ in length, or a score is NaN.
+std::vector<double> totals(const std::vector<Signal>& signals);
+
+/// @return the first of the greatest
+std::size_t best_of(const std::vector<double>& totals);
+
+/// @return -sum of p log p over the softmax of the logits, in nats
+double entropy(const std::vector<float>& logits);
+
+}  // namespace ps::outpaint
