@@ -123,7 +123,7 @@ TEST(Convolution, asked_for_winograd_where_it_cannot_be_is_direct) {
   }
 }
 
-TEST(Convolution, chosen_automatically_is_its_reference_on_both_sides_of_the_choice) {
+TEST(Convolution, chosen_automatically_is_winograd_for_large_work_and_direct_for_small) {
   Random random(56);
   for (const int size : {8, 21}) {
     for (const int channels : {3, 40}) {
@@ -131,10 +131,17 @@ TEST(Convolution, chosen_automatically_is_its_reference_on_both_sides_of_the_cho
       const Slice in({1, size, size, channels}, 0, random);
       const Values expected = reference::convolution(Values(in), weight, {}, {1, 1, 1});
       on_every_isa([&] {
-        const Tensor out({1, size, size, 33});
-        Workspace workspace;
-        Convolution(weight, {}, {1, 1})(in, out, workspace);
-        EXPECT_TRUE(near(out, expected, kWinograd));
+        const auto by = [&](Method method) {
+          Tensor out({1, size, size, 33});
+          Workspace workspace;
+          Convolution(weight, {}, {1, 1, 1, method})(in, out, workspace);
+          EXPECT_TRUE(near(out, expected, kWinograd));
+          return out;
+        };
+        const bool large = size == 21 && channels == 40;
+        const Tensor automatic = by(Method::automatic);
+        EXPECT_EQ(same_bytes(automatic, by(Method::winograd)), large);
+        EXPECT_EQ(same_bytes(automatic, by(Method::direct)), !large);
       });
     }
   }

@@ -60,6 +60,23 @@ TEST(MaskedConvolution, does_not_see_what_is_hidden) {
   }
 }
 
+TEST(MaskedConvolution, of_a_pixel_does_not_depend_on_the_rest_of_the_batch) {
+  Random random(85);
+  const WeightTensor weight = random.weights({33, 20, 3, 3});
+  const Slice in({7, 5, 6, 20}, 0, random);
+  std::vector<std::uint8_t> mask(9 * 30);
+  for (std::uint8_t& visible : mask) visible = random.coin();
+  on_every_isa([&] {
+    const MaskedConvolution convolution(weight, random.reals(33));
+    const Tensor all({7, 5, 6, 33}), one({1, 5, 6, 33});
+    convolution(in, mask.data(), all);
+    for (int image = 0; image < 7; ++image) {
+      convolution(in.view().images(image, 1), mask.data(), one);
+      EXPECT_TRUE(same_bytes(one, all.view().images(image, 1)));
+    }
+  });
+}
+
 TEST(MaskedConvolution, refuses_misfit_shapes) {
   Random random(84);
   EXPECT_THROW(MaskedConvolution(random.weights({3, 2, 5, 5}), {}), Error);

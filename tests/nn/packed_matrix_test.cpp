@@ -106,15 +106,17 @@ TEST(PackedMatrix, a_row_has_the_same_bytes_among_any_others) {
 TEST(PackedMatrix, stays_with_the_instruction_set_it_was_packed_for) {
   Random random(103);
   const Product product(random, 1, 20, 70);
-  for (const Isa packed_for : available_isas()) {
-    std::vector<float> expected;
-    PackedMatrix matrix;
-    {
-      const UseIsa use(packed_for);
-      matrix = product.packed();
-      expected = product.run(matrix, 0, kRows);
+  for (const Storage storage : {Storage::f32, Storage::bf16}) {
+    for (const Isa packed_for : available_isas()) {
+      const auto packed = [&] {
+        const UseIsa use(packed_for);
+        return product.packed(storage);
+      };
+      const PackedMatrix matrix = packed();
+      const std::vector<float> expected = product.run(matrix, 0, kRows);
+      on_every_isa([&] { EXPECT_EQ(product.run(matrix, 0, kRows), expected); });
+      EXPECT_NEAR(expected[0], product.run(product.packed(storage), 0, kRows)[0], 1e-5);
     }
-    on_every_isa([&] { EXPECT_EQ(product.run(matrix, 0, kRows), expected); });
   }
 }
 

@@ -68,7 +68,7 @@ inline Floats logistic(Floats x) {
 inline Floats unit(Floats x) { return x < 0.0f ? exponential_minus_1(x) : x; }
 
 inline Floats larger(Floats a, Floats b) {
-  return (a > b) | (a != a) ? a : b;  // a NaN of either stays
+  return ((a > b) | (a != a)) ? a : b;  // a NaN of either stays
 }
 
 /// out = f(in...), value by value; the last ones go through the same operations as all others.
