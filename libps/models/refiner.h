@@ -41,7 +41,8 @@ class Refiner {
     tanh_of_sum,  ///< tanh(net + image): RealEstate10K
     tanh_of_net,  ///< tanh(net) + image: Matterport
   };
-  static constexpr int kMultiple = 4;  ///< of an image's sides
+  static constexpr int kMultiple = 4;            ///< of an image's sides
+  static constexpr std::size_t kNoiseRows = 16;  ///< one for each norm
 
   explicit Refiner(const nn::Weights& weights, const ModelOptions& options = {},
                    Output output = Output::tanh_of_sum);
