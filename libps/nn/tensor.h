@@ -53,7 +53,8 @@ using AlignedFloats = std::unique_ptr<float[], FreeAligned>;
 /// @return uninitialised floats, aligned to 64 bytes
 AlignedFloats aligned_floats(std::size_t count);
 
-/// @brief Activations with memory of their own, zero at first, aligned to 64 bytes, dense.
+/// @brief Activations with memory of their own, zero at first, aligned to 64 bytes, dense. One that is
+/// made without a shape holds nothing.
 class Tensor {
  public:
   Tensor() = default;
@@ -66,7 +67,7 @@ class Tensor {
 
  private:
   AlignedFloats memory_;
-  TensorView view_;
+  TensorView view_ = {nullptr, {0, 0, 0, 0}, 0};
 };
 
 /// @brief Scratch memory of a forward: a stack that grows in the first forward and is used again by

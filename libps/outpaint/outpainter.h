@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "libps/models/autoencoder.h"
+#include "libps/models/classifier.h"
+#include "libps/models/discriminator.h"
+#include "libps/models/pixel_cnn.h"
+#include "libps/models/refiner.h"
+#include "libps/outpaint/sampler.h"
+#include "libps/outpaint/selection.h"
+
+namespace ps::outpaint {
+
+/// @brief An opinion about a picture. The picture is [1, h, w, 3], RGB in [-1,1].
+struct Scorer {
+  std::string name;
+  bool higher_is_better = true;
+  std::function<double(const nn::TensorView& image, nn::Workspace& workspace)> score;
+};
+
+/// How real it looks (SPEC.md 9). The network must outlive the scorer, here and below.
+Scorer discriminator_scorer(const models::Discriminator& network);
+/// How certain a scene classifier is: the entropy of its softmax, lower is better.
+Scorer entropy_scorer(const models::Classifier& network);
+
+struct OutpaintOptions {
+  int samples = 50;  ///< completions drawn; at most, when `until_settled`
+  /// Draw in rounds of kRound until the best of all came in the first half of what is drawn and the
+  /// last round did not change it. Were totals independent, one more round would then change it
+  /// with a chance of kRound / (drawn + kRound).
+  bool until_settled = false;
+  static constexpr int kRound = 8;
+  double temperature = 0.7;
+  std::uint64_t seed = 0;
+  std::uint32_t view = 0;
+  bool likelihood = false;  ///< count the PixelCNN's own mean log-likelihood as a signal
+  /// Refine and score only so many, the best by log-likelihood; 0 = all.
+  int refine_best = 0;
+  /// Told what share of the sampling is done; returns false to stop.
+  std::function<bool(double done)> progress;
+};
+
+/// What it took; seconds are of this run.
+struct OutpaintReport {
+  std::size_t missing_cells = 0, levels = 0;
+  int drawn = 0, refined = 0;
+  cv::Rect changed;  ///< the pixels in which completions can differ
+  double encode_seconds = 0, sample_seconds = 0, decode_seconds = 0, refine_seconds = 0,
+         score_seconds = 0;
+};
+
+struct Outpainted {
+  nn::Tensor image;  ///< [1, h, w, 3]: the best one, refined; empty when it was stopped
+  int best = -1;     ///< its number
+  std::vector<std::int32_t> codes;
+  std::vector<double> totals;  ///< by completion that was refined, in the order of `refined`
+  std::vector<int> refined;    ///< their numbers
+  std::vector<std::vector<double>> scores;  ///< by signal, then as `totals`
+  OutpaintReport report;
+};
+
+/// @brief Fills in what nothing was projected to (SPEC.md 1, 6 to 9): encode, sample completions,
+/// decode, combine, refine, keep the best.
+///
+/// Completions differ in a part of the view alone, so only that part, grown by what the networks
+/// can reach, is decoded and refined for each; the rest once. All completions of a view share the
+/// refiner's noise. Not for two threads at once.
+class Outpainter {
+ public:
+  /// Networks must outlive this.
+  struct Networks {
+    const models::Autoencoder* autoencoder = nullptr;
+    const models::PixelCnn* pixel_cnn = nullptr;
+    const models::Refiner* refiner = nullptr;
+    std::vector<Scorer> scorers;  ///< may be empty: then log-likelihood alone selects
+  };
+  explicit Outpainter(Networks networks);
+
+  /// @param projection  [1, h, w, 3], RGB in [-1,1], 0 where nothing was projected; sides multiples
+  /// of 8
+  /// @param background  not 0 = missing (dilated, SPEC.md 4); of the same size
+  /// @return where nothing is missing, the projection as it is
+  /// Throws ps::Error when shapes do not fit or options are out of range.
+  Outpainted run(const nn::TensorView& projection, const cv::Mat1b& background,
+                 const OutpaintOptions& options);
+
+ private:
+  struct View;
+  void prepare(View& view, const nn::TensorView& projection) const;
+  std::vector<std::int32_t> encode(View& view, const nn::TensorView& projection);
+  bool draw(View& view, Sampler& sampler);
+  void refine_and_score(View& view, const std::vector<int>& numbers);
+  void decode(View& view, const Completion& completion);
+  void refine(View& view);
+
+  Networks networks_;
+  nn::Workspace workspace_;
+};
+
+}  // namespace ps::outpaint

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The incremental sampler at the published widths: against whole forwards, against the number of
+// completions and of missing cells. See tests/bench/README.md.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "libps/core/parallel.h"
+#include "libps/outpaint/outpainter.h"
+#include "tests/bench/nn/peers.h"
+#include "tests/support/random_weights.h"
+
+namespace ps::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kSide = 256;
+constexpr double kReferencePeak = 189;
+
+/// A view that turned to the right: cells of columns from the right end on are missing, `cells` in
+/// all.
+outpaint::Order right_side(int cells) {
+  cv::Mat1b background(kSide, kSide, std::uint8_t{0});
+  for (int i = 0; i < cells; ++i) {
+    background(cv::Rect(8 * (31 - i / 32), 8 * (i % 32), 8, 8)) = 1;
+  }
+  return outpaint::order_of(background);
+}
+
+std::vector<std::int32_t> some_codes() {
+  std::vector<std::int32_t> codes;
+  for (int i = 0; i < 1024; ++i) codes.push_back(i * 7 % 512);
+  return codes;
+}
+
+struct Timed {
+  double seconds = 0;
+  double mib = 0;
+};
+
+/// Everything from the codes of a view on, with memory that is there already.
+Timed time_sampler(const models::PixelCnn& net, int cells, int completions) {
+  const outpaint::Order order = right_side(cells);
+  Timed timed;
+  outpaint::Sampler warm(net, order, some_codes());
+  warm.sample(0, completions);
+  timed.mib = static_cast<double>(warm.bytes()) / (1 << 20);
+  timed.seconds = fastest(completions > 100 ? 1 : 3, [&] {
+    outpaint::Sampler sampler(net, order, some_codes());
+    sampler.sample(0, completions);
+  });
+  return timed;
+}
+
+void print(const char* what, int cells, int completions, const Timed& timed) {
+  std::printf("%-10s %4d cells, %4d completions: %7.3f s  %6.0f MiB\n", what, cells, completions,
+              timed.seconds, timed.mib);
+}
+
+Json row(int cells, int completions, const Timed& timed) {
+  return {{"cells", cells},
+          {"completions", completions},
+          {"seconds", timed.seconds},
+          {"mib", timed.mib}};
+}
+
+Json against_whole_forwards(const models::PixelCnn& net, double scale) {
+  const outpaint::Order order = right_side(450);
+  const auto codes = some_codes();
+  nn::Tensor logits({1, 32, 32, net.codes()});
+  nn::Workspace workspace;
+  const double forward =
+      fastest(9, [&] { net.forward(codes.data(), order.masks, logits, workspace); });
+  const Timed fifty = time_sampler(net, 450, 50), one = time_sampler(net, 450, 1);
+  const double published = forward * 450 * 50;
+  std::printf("one whole forward: %.1f ms; 450 cells x 50 completions of them would take %.0f s\n",
+              forward * 1e3, published);
+  std::printf("incremental: %.3f s (target %.2f s), ratio %.0f; %.0f MiB\n", fifty.seconds,
+              2.0 * scale, published / fifty.seconds, fifty.mib);
+  std::printf("one completion: %.3f s (target %.2f s)\n\n", one.seconds, 0.2 * scale);
+  return {{"forward_ms", forward * 1e3},    {"published_seconds", published},
+          {"fifty_seconds", fifty.seconds}, {"ratio", published / fifty.seconds},
+          {"fifty_mib", fifty.mib},         {"one_seconds", one.seconds}};
+}
+
+/// Everything of one support view at the published widths.
+Json whole_view() {
+  const models::Autoencoder autoencoder(models::random_autoencoder());
+  const models::PixelCnn pixel_cnn(models::random_pixel_cnn());
+  const models::Refiner refiner(models::random_refiner());
+  const models::Discriminator discriminator(models::random_discriminator());
+  const models::Classifier classifier(models::random_classifier());
+  outpaint::Outpainter painter(
+      {&autoencoder,
+       &pixel_cnn,
+       &refiner,
+       {outpaint::discriminator_scorer(discriminator), outpaint::entropy_scorer(classifier)}});
+  nn::Tensor projection({1, kSide, kSide, 3});
+  for (std::size_t i = 0; i < projection.shape().pixels() * 3; ++i) {
+    projection.data()[i] = std::sin(0.01f * static_cast<float>(i % 3001));
+  }
+  cv::Mat1b background(kSide, kSide, std::uint8_t{0});
+  background(cv::Rect(kSide - 112, 0, 112, kSide)) = 1;
+  Json rows = Json::array();
+  for (const auto& [samples, refined] : {std::pair(1, 0), std::pair(50, 8), std::pair(50, 0)}) {
+    outpaint::OutpaintOptions options;
+    options.samples = samples;
+    options.refine_best = refined;
+    outpaint::Outpainted result;
+    const double seconds =
+        fastest(1, [&] { result = painter.run(projection, background, options); });
+    const outpaint::OutpaintReport& r = result.report;
+    std::printf(
+        "one view, %2d completions, %2d refined: %6.2f s (encode %.3f, sample %.3f, decode %.3f, "
+        "refine %.3f, score %.3f)\n",
+        samples, r.refined, seconds, r.encode_seconds, r.sample_seconds, r.decode_seconds,
+        r.refine_seconds, r.score_seconds);
+    rows.push_back({{"completions", samples},
+                    {"refined", r.refined},
+                    {"seconds", seconds},
+                    {"encode", r.encode_seconds},
+                    {"sample", r.sample_seconds},
+                    {"decode", r.decode_seconds},
+                    {"refine", r.refine_seconds},
+                    {"score", r.score_seconds}});
+  }
+  return rows;
+}
+
+void run(const std::string& json_file) {
+  const Peak blas = peak_of_openblas(), eigen = peak_of_eigen();
+  const Peak& peak = blas.gflops > eigen.gflops ? blas : eigen;
+  std::printf("sgemm 2048^3, %s: %.0f GFLOP/s, %d threads\n", peak.name.c_str(), peak.gflops,
+              threads());
+  Json json = {{"sgemm", peak.name}, {"sgemm_gflops", peak.gflops}, {"threads", threads()}};
+  const models::PixelCnn net(models::random_pixel_cnn());
+  json["headline"] = against_whole_forwards(net, kReferencePeak / peak.gflops);
+  for (const int completions : {1, 2, 5, 10, 20, 50, 100, 200}) {
+    const Timed timed = time_sampler(net, 450, completions);
+    print("by N", 450, completions, timed);
+    json["by_completions"].push_back(row(450, completions, timed));
+  }
+  for (const int cells : {0, 1, 10, 32, 64, 128, 256, 450, 700, 1024}) {
+    const Timed timed = time_sampler(net, cells, 50);
+    print("by cells", cells, 50, timed);
+    json["by_cells"].push_back(row(cells, 50, timed));
+  }
+  json["whole_view"] = whole_view();
+  if (!json_file.empty()) std::ofstream(json_file) << json.dump(1) << '\n';
+}
+
+}  // namespace
+}  // namespace ps::bench
+
+int main(int argc, char** argv) {
+  CLI::App app("Times the sampler and a whole view.");
+  std::string json;
+  app.add_option("--json", json, "File to write");
+  CLI11_PARSE(app, argc, argv);
+  ps::bench::run(json);
+}

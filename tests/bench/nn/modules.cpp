@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/bench/nn/modules.h"
+
+#include <memory>
+#include <random>
+
+#include "libps/models/autoencoder.h"
+#include "libps/models/classifier.h"
+#include "libps/models/depth_net.h"
+#include "libps/models/discriminator.h"
+#include "libps/models/pixel_cnn.h"
+#include "libps/models/refiner.h"
+#include "libps/outpaint/order.h"
+#include "tests/support/random_weights.h"
+
+namespace ps::bench {
+namespace {
+
+using models::ModelOptions;
+using Forward = std::function<void(nn::Workspace&)>;
+
+constexpr int kSide = 256;
+
+/// Smooth patches with some noise, in [-1, 1]: more like a photo than noise alone.
+std::shared_ptr<nn::Tensor> picture(int channels) {
+  auto image = std::make_shared<nn::Tensor>(nn::Shape{1, kSide, kSide, channels});
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> noise(-0.1f, 0.1f);
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      for (int c = 0; c < channels; ++c) {
+        image->view().pixel(0, y, x)[c] = 0.8f * std::sin(0.05f * static_cast<float>(x + 10 * c)) *
+                                              std::cos(0.03f * static_cast<float>(y)) +
+                                          noise(random);
+      }
+    }
+  }
+  return image;
+}
+
+std::shared_ptr<std::vector<std::int32_t>> some_codes() {
+  auto codes = std::make_shared<std::vector<std::int32_t>>();
+  for (int i = 0; i < 1024; ++i) codes->push_back(i * 7 % 512);
+  return codes;
+}
+
+Forward depth(const ModelOptions& options, nn::Tensor* out) {
+  const auto net = std::make_shared<models::DepthNet>(models::random_depth_net(), options);
+  const auto in = picture(3);
+  *out = nn::Tensor({1, kSide, kSide, 1});
+  return [=](nn::Workspace& workspace) { net->forward(*in, *out, workspace); };
+}
+
+Forward vq_encode(const ModelOptions& options, nn::Tensor* out) {
+  const auto net = std::make_shared<models::Autoencoder>(models::random_autoencoder(), options);
+  const auto in = picture(3);
+  *out = nn::Tensor(net->grid(in->shape()));
+  return [=](nn::Workspace& workspace) {
+    std::int32_t codes[1024];
+    net->encode(*in, *out, workspace);
+    net->quantise(*out, codes);
+  };
+}
+
+Forward vq_decode(const ModelOptions& options, nn::Tensor* out) {
+  const auto net = std::make_shared<models::Autoencoder>(models::random_autoencoder(), options);
+  const auto codes = some_codes();
+  *out = nn::Tensor({1, kSide, kSide, 3});
+  return [=](nn::Workspace& workspace) { net->decode(codes->data(), *out, workspace); };
+}
+
+Forward pixel_cnn(const ModelOptions& options, nn::Tensor* out) {
+  const auto net = std::make_shared<models::PixelCnn>(models::random_pixel_cnn(), options);
+  cv::Mat1b background(kSide, kSide, std::uint8_t{0});
+  background(cv::Rect(144, 0, 112, kSide)) = 1;
+  const auto order = std::make_shared<outpaint::Order>(outpaint::order_of(background));
+  const auto codes = some_codes();
+  *out = nn::Tensor({1, 32, 32, 512});
+  return
+      [=](nn::Workspace& workspace) { net->forward(codes->data(), order->masks, *out, workspace); };
+}
+
+Forward refine(const ModelOptions& options, nn::Tensor* out) {
+  const auto net = std::make_shared<models::Refiner>(models::random_refiner(), options);
+  const auto in = picture(4);
+  const auto noise = std::make_shared<std::vector<float>>(net->noise_count(), 0.3f);
+  *out = nn::Tensor({1, kSide, kSide, 3});
+  return [=](nn::Workspace& workspace) { net->forward(*in, noise->data(), *out, workspace); };
+}
+
+Forward discriminate(const ModelOptions& options, nn::Tensor* out) {
+  const auto net = std::make_shared<models::Discriminator>(models::random_discriminator(), options);
+  const auto in = picture(3);
+  *out = nn::Tensor({1, 1, 1, 1});
+  return [=](nn::Workspace& workspace) { net->score(*in, out->data(), workspace); };
+}
+
+Forward classify(const ModelOptions& options, nn::Tensor* out) {
+  const auto net = std::make_shared<models::Classifier>(models::random_classifier(), options);
+  const auto in = picture(3);
+  *out = nn::Tensor({1, 1, 1, net->classes()});
+  return [=](nn::Workspace& workspace) { net->forward(*in, *out, workspace); };
+}
+
+}  // namespace
+
+std::vector<Module> modules() {
+  return {{"depth U-Net", 5.53, 45, depth},          {"VQ encode", 3.73, 30, vq_encode},
+          {"VQ decode", 2.58, 20, vq_decode},        {"PixelCNN, whole", 11.43, 0, pixel_cnn},
+          {"refinement", 128.2, 500, refine},        {"discriminator", 9.20, 70, discriminate},
+          {"classifier at 256^2", 4.74, 0, classify}};
+}
+
+}  // namespace ps::bench

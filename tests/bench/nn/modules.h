@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every network at its published width, with weights by chance.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "libps/models/model_options.h"
+#include "libps/nn/tensor.h"
+
+namespace ps::bench {
+
+struct Module {
+  std::string name;
+  double gflop = 0;      ///< of one forward, as SPEC.md 2 counts
+  double target_ms = 0;  ///< of issue 3, where sgemm gives 189 GFLOP/s; 0 = none
+  /// Makes the network; returns what runs it once and leaves its output in the tensor.
+  std::function<std::function<void(nn::Workspace&)>(const models::ModelOptions&, nn::Tensor*)> make;
+};
+
+std::vector<Module> modules();
+
+}  // namespace ps::bench
