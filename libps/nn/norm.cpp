@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "libps/nn/indirect_product.h"
 #include "libps/nn/kernels/kernels.h"
@@ -12,7 +13,6 @@ namespace ps::nn {
 namespace {
 
 constexpr double kEpsilon = 1e-5;
-constexpr int kLanes = 8;  ///< of a pixel's sums
 
 /// Biased variances of up to kChannelBlock channels, in the order of the pixels.
 void channel_variances(const TensorView& part, const double* mean, double* variance) {
@@ -46,26 +46,12 @@ void normalise_block(const TensorView& in, const TensorView& out, Activation act
   }
 }
 
-/// The sum of f(x) over a pixel's channels, in kLanes chains: quick, and the same wherever the
-/// pixel stands.
-template <class F>
-double sum_of(const float* x, int channels, const F& f) {
-  double sums[kLanes] = {};
-  int c = 0;
-  for (; c + kLanes <= channels; c += kLanes) {
-    for (int lane = 0; lane < kLanes; ++lane) sums[lane] += f(x[c + lane]);
-  }
-  for (int lane = 0; c < channels; ++c, ++lane) sums[lane] += f(x[c]);
-  double sum = 0;
-  for (const double s : sums) sum += s;
-  return sum;
-}
-
 void normalise_pixel(const float* in, float* out, int channels) {
-  const double mean = sum_of(in, channels, [](double x) { return x; }) / channels;
-  const auto square = [mean](double x) { return (x - mean) * (x - mean); };
-  const double variance = sum_of(in, channels, square) / std::max(1, channels - 1);
-  const double scale = 1 / std::sqrt(variance + kEpsilon);
+  const auto add = [](double sum, float x) { return sum + x; };
+  const double mean = folded(in, channels, 0.0, add, std::plus<>()) / channels;
+  const auto add_square = [mean](double sum, float x) { return sum + (x - mean) * (x - mean); };
+  const double squares = folded(in, channels, 0.0, add_square, std::plus<>());
+  const double scale = 1 / std::sqrt(squares / std::max(1, channels - 1) + kEpsilon);
   for (int c = 0; c < channels; ++c) out[c] = static_cast<float>((in[c] - mean) * scale);
 }
 

@@ -75,4 +75,21 @@ inline void channel_means(const TensorView& part, double* mean) {
   for (int c = 0; c < channels; ++c) mean[c] = sum[c] / static_cast<double>(pixels);
 }
 
+/// @brief step(result, x) along a pixel's channels, in eight chains so that none waits for itself,
+/// which are then joined in order: the same wherever the pixel stands.
+template <class T, class Step, class Join>
+T folded(const float* x, int channels, T first, const Step& step, const Join& join) {
+  constexpr int kChains = 8;
+  T chains[kChains];
+  std::fill_n(chains, kChains, first);
+  int c = 0;
+  for (; c + kChains <= channels; c += kChains) {
+    for (int i = 0; i < kChains; ++i) chains[i] = step(chains[i], x[c + i]);
+  }
+  for (int i = 0; c < channels; ++c, ++i) chains[i] = step(chains[i], x[c]);
+  T result = first;
+  for (const T& chain : chains) result = join(result, chain);
+  return result;
+}
+
 }  // namespace ps::nn

@@ -2,6 +2,7 @@
 #include "libps/nn/softmax.h"
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <string>
 
@@ -13,19 +14,14 @@
 namespace ps::nn {
 namespace {
 
-constexpr int kLanes = 8;  ///< of sums: as many chains, so that a sum's latency is hidden
-
 void softmax_of_pixel(const float* in, float* out, int channels, float temperature) {
-  float most = -std::numeric_limits<float>::infinity();
-  for (int c = 0; c < channels; ++c) most = std::max(most, in[c]);
-  for (int c = 0; c < channels; ++c) out[c] = (in[c] - most) / temperature;
+  const auto larger = [](float a, float b) { return b > a ? b : a; };
+  const float most = folded(in, channels, -std::numeric_limits<float>::infinity(), larger, larger);
+  if (in != out) std::copy_n(in, channels, out);  // a loop over one array alone is vectorised
+  for (int c = 0; c < channels; ++c) out[c] = (out[c] - most) / temperature;
   kernels().exp(out, out, static_cast<std::size_t>(channels));
-  float sums[kLanes] = {};
-  for (int c = 0; c < channels; ++c) sums[c % kLanes] += out[c];
-  double sum = 0;
-  for (const float s : sums) sum += s;
-  const auto inverse = static_cast<float>(1 / sum);
-  for (int c = 0; c < channels; ++c) out[c] *= inverse;
+  const float sum = folded(out, channels, 0.0f, std::plus<>(), std::plus<>());
+  for (int c = 0; c < channels; ++c) out[c] /= sum;
 }
 
 }  // namespace
