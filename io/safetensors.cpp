@@ -20,6 +20,7 @@ namespace {
 using Json = nlohmann::json;
 using ReadAt = std::function<void(std::size_t offset, void* to, std::size_t bytes)>;
 
+constexpr std::size_t kLongestShown = 512;           // of a tensor's name
 constexpr std::size_t kLongestHeader = 100'000'000;  // as the reference implementation
 
 /// @return bytes of one element; empty for a kind that safetensors does not have
@@ -67,7 +68,7 @@ struct Entry {
 /// @param room  bytes of data after the header
 Entry parse_entry(const std::string& key, const Json& json, std::size_t room,
                   const std::string& file) {
-  const std::string where = file + ", tensor " + in_quotes(key);
+  const std::string where = file + ", tensor " + in_quotes(key, kLongestShown);
   if (!json.is_object() || !json.contains("dtype") || !json["dtype"].is_string()) {
     throw Error(where, "has no dtype", "dtype, shape and data_offsets");
   }
@@ -113,7 +114,7 @@ TensorMap parse(std::size_t size, const ReadAt& read, const std::string& name) {
   std::size_t end = 0;
   for (const Entry& entry : entries) {
     if (entry.begin < end) {
-      throw Error(name, "tensor " + in_quotes(entry.name) + " overlaps another",
+      throw Error(name, "tensor " + in_quotes(entry.name, kLongestShown) + " overlaps another",
                   "data side by side");
     }
     end = entry.end;
@@ -160,7 +161,7 @@ std::vector<const TensorMap::value_type*> in_data_order(const TensorMap& tensors
   for (const auto& item : tensors) {
     if (item.first == "__metadata__" || width(&item) == 0 ||
         product(item.second.shape, width(&item)) != item.second.bytes.size()) {
-      throw Error(where, "tensor " + in_quotes(item.first) + " is unsound",
+      throw Error(where, "tensor " + in_quotes(item.first, kLongestShown) + " is unsound",
                   "a known dtype, and bytes that fit the shape");
     }
     order.push_back(&item);

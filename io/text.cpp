@@ -69,8 +69,8 @@ double take_finite(std::string_view& line, const LineReader& lines, const char* 
   throw Error(lines.where(), std::string(what) + " is not finite", "a finite number");
 }
 
-std::string in_quotes(std::string_view text) {
-  std::string out = "'" + std::string(text.substr(0, 40)) + (text.size() > 40 ? "...'" : "'");
+std::string in_quotes(std::string_view text, std::size_t most) {
+  std::string out = "'" + std::string(text.substr(0, most)) + (text.size() > most ? "...'" : "'");
   std::replace_if(
       out.begin(), out.end(), [](unsigned char c) { return c < ' ' || c > '~'; }, '?');
   return out;

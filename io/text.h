@@ -54,8 +54,8 @@ double take_number(std::string_view& line, const LineReader& lines, const char* 
 /// @brief As take_number(), and throws when the number is not finite.
 double take_finite(std::string_view& line, const LineReader& lines, const char* what);
 
-/// @return `text` in quotes, cut to 40 characters, without control characters: for messages
-std::string in_quotes(std::string_view text);
+/// @return `text` in quotes, cut to `most` characters, without control characters: for messages
+std::string in_quotes(std::string_view text, std::size_t most = 40);
 
 /// @brief Appends the shortest text that reads back as the same number.
 void append_number(std::string& text, double value);
