@@ -21,6 +21,17 @@ suite() {
   summary+=" ($((SECONDS - start)) s)"$'\n'
 }
 
+# warnings_are_errors PRESET: in this build, from now on. (Users' compilers may know more warnings.)
+warnings_are_errors() {
+  local cache=$root/build/$1/CMakeCache.txt
+  if ! grep -qs '^PIXELSYNTH_WERROR:BOOL=ON' "$cache"; then
+    (cd "$root" && cmake --preset "$1" -DPIXELSYNTH_WERROR=ON) >"$root/build/$1.log" 2>&1 || {
+      tail -n 20 "$root/build/$1.log" >&2
+      return 1
+    }
+  fi
+}
+
 sanitized() {
   local readers=("$root"/tests/fuzz/fuzz_*.cpp)
   readers=("${readers[@]##*/}")
@@ -46,6 +57,7 @@ case "${1:-}" in
     ;;
 esac
 install_packages
+warnings_are_errors release
 build release
 suite tests release
 [ "${1:-}" = --quick ] || sanitized
