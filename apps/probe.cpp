@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/probe.h"
+
+#include <algorithm>
+
+#include "libps/core/error.h"
+
+namespace ps::apps {
+namespace {
+
+constexpr std::size_t kLongestSide = std::size_t{1} << 24;
+
+std::string text_of(const std::vector<std::size_t>& shape) {
+  std::string text;
+  for (const std::size_t side : shape) {
+    text += (text.empty() ? "" : ",") + (side == 0 ? "any" : std::to_string(side));
+  }
+  return "[" + text + "]";
+}
+
+bool fits(std::size_t side, std::size_t wanted) {
+  return wanted == 0 ? side >= 1 && side <= kLongestSide : side == wanted;
+}
+
+}  // namespace
+
+void add_files(CLI::App& verb, ProbeFiles& files) {
+  verb.add_option("--in", files.in, "Safetensors to read")->required()->type_name("FILE");
+  verb.add_option("--out", files.out, "Safetensors to write")->required()->type_name("FILE");
+  verb.add_option("--prefix", files.prefix, "What the tensors' names in --in begin with")
+      ->type_name("TEXT");
+}
+
+ProbeInput::ProbeInput(const ProbeFiles& files)
+    : files_(files), tensors_(read_safetensors(files.in)) {}
+
+bool ProbeInput::has(const std::string& name) const {
+  return tensors_.count(files_.prefix + name) > 0;
+}
+
+const FileTensor& ProbeInput::take(const std::string& name) const {
+  const auto found = tensors_.find(files_.prefix + name);
+  if (found != tensors_.end()) return found->second;
+  std::string names;
+  for (const auto& [other, tensor] : tensors_) names += (names.empty() ? "" : ", ") + other;
+  throw Error(files_.in, "has no tensor '" + files_.prefix + name + "'; it has " +
+                             (names.empty() ? "none" : names));
+}
+
+const FileTensor& ProbeInput::take(const std::string& name,
+                                   const std::vector<std::size_t>& shape) const {
+  const FileTensor& tensor = take(name);
+  if (!std::equal(tensor.shape.begin(), tensor.shape.end(), shape.begin(), shape.end(), fits)) {
+    throw Error(files_.in,
+                "tensor '" + files_.prefix + name + "' has the shape " + text_of(tensor.shape),
+                text_of(shape));
+  }
+  return tensor;
+}
+
+}  // namespace ps::apps

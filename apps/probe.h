@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Internal to `probe`: what its modules share.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/context.h"
+#include "io/safetensors.h"
+
+namespace ps::apps {
+
+struct ProbeFiles {
+  std::string in;
+  std::string out;
+  std::string prefix;  ///< what the names in `in` begin with
+};
+
+/// @brief Adds --in, --out and --prefix.
+void add_files(CLI::App& verb, ProbeFiles& files);
+
+/// The tensors of --in.
+class ProbeInput {
+ public:
+  /// Throws ps::Error as read_safetensors() does.
+  explicit ProbeInput(const ProbeFiles& files);
+
+  bool has(const std::string& name) const;
+
+  /// @param name  without the prefix
+  /// Throws ps::Error that says which tensors there are when there is no such one.
+  const FileTensor& take(const std::string& name) const;
+
+  /// @brief The same, of a given shape; a side of 0 may be anything from 1 to 2^24.
+  const FileTensor& take(const std::string& name, const std::vector<std::size_t>& shape) const;
+
+ private:
+  const ProbeFiles& files_;
+  TensorMap tensors_;
+};
+
+// Each adds modules to the verb.
+void add_probe_splat(CLI::App& probe, const Context& context);
+void add_probe_networks(CLI::App& probe, const Context& context);
+
+}  // namespace ps::apps
