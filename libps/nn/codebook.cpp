@@ -9,6 +9,16 @@
 #include "libps/nn/pixel_loop.h"
 
 namespace ps::nn {
+namespace {
+
+void check_channels(const TensorView& view, int expected) {
+  if (view.shape.channels != expected) {
+    throw Error("codebook", std::to_string(view.shape.channels) + " channels",
+                std::to_string(expected));
+  }
+}
+
+}  // namespace
 
 Codebook::Codebook(const WeightTensor& embed) {
   const std::size_t dimensions = embed.shape.size();
@@ -36,10 +46,7 @@ Codebook::Codebook(const WeightTensor& embed) {
 }
 
 void Codebook::nearest(const TensorView& in, std::int32_t* codes) const {
-  if (in.shape.channels != channels_) {
-    throw Error("codebook", std::to_string(in.shape.channels) + " channels",
-                std::to_string(channels_));
-  }
+  check_channels(in, channels_);
   Epilogue epilogue;
   epilogue.bias = squares_.data();  // |x|^2 is the same for all codes
   const auto width = static_cast<std::size_t>(size_);
@@ -65,10 +72,7 @@ void Codebook::nearest(const TensorView& in, std::int32_t* codes) const {
 }
 
 void Codebook::embed(const std::int32_t* codes, const TensorView& out) const {
-  if (out.shape.channels != channels_) {
-    throw Error("codebook", std::to_string(out.shape.channels) + " channels",
-                std::to_string(channels_));
-  }
+  check_channels(out, channels_);
   const auto width = static_cast<std::size_t>(channels_);
   for_ranges(out.shape.pixels(), width, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -187,7 +187,7 @@ TEST(Convolution, with_bf16_weights_takes_half_the_memory) {
   ConvolutionOptions options = {1, 1};
   options.method = Method::direct;
   const std::size_t bytes = Convolution(weight, {}, options).bytes();
-  EXPECT_EQ(bytes, 64u * 64 * 9 * sizeof(float));
+  EXPECT_EQ(bytes, sizeof(float) * 64 * 64 * 9);
   options.storage = Storage::bf16;
   EXPECT_EQ(Convolution(weight, {}, options).bytes(), bytes / 2);
 }

@@ -13,6 +13,8 @@ namespace {
 
 constexpr int kRows = PackedMatrix::kRows;
 
+std::size_t index(int i) { return static_cast<std::size_t>(i); }
+
 /// Rows of `taps` pieces each, that lie scattered, and the matrix they are multiplied with.
 struct Product {
   Product(Random& random, int taps_, int depth_, int columns_)
@@ -20,37 +22,45 @@ struct Product {
         depth(depth_),
         columns(columns_),
         weights(random.weights({taps, depth, columns})),
-        values(random.reals(static_cast<std::size_t>(kRows * taps * depth + 1))) {}
+        values(random.reals(index(kRows) * index(taps) * index(depth) + 1)) {}
 
   PackedMatrix packed(Storage storage = Storage::f32) const {
-    return PackedMatrix(
-        taps, depth, columns, [&](int t, int i, int c) { return weight(t, i, c); }, storage);
+    const auto value = [&](int t, int i, int c) { return weight(t, i, c); };
+    return PackedMatrix(taps, depth, columns, value, storage);
   }
   float weight(int tap, int row, int column) const {
-    return weights.values[static_cast<std::size_t>((tap * depth + row) * columns + column)];
+    return weights.values[index((tap * depth + row) * columns + column)];
   }
-  const float* piece(int tap, int row) const {
-    return values.data() + static_cast<std::size_t>((tap * kRows + row) * depth);
+  /// The pieces of a row lie behind each other.
+  const float* piece(int tap, int row) const { return &values[index((row * taps + tap) * depth)]; }
+
+  std::vector<int> all_taps() const {
+    std::vector<int> which(index(taps));
+    std::iota(which.begin(), which.end(), 0);
+    return which;
   }
-  /// Multiplies rows [first, first + count), panels one by one in any order.
-  std::vector<float> run(const PackedMatrix& matrix, int first, int count) const {
-    std::vector<const float*> rows(static_cast<std::size_t>(std::max(1, taps) * kRows));
-    for (int t = 0; t < taps; ++t) {
+  /// Multiplies rows [first, first + count), panels one by one, with the pieces of these taps.
+  std::vector<float> run(const PackedMatrix& matrix, int first, int count,
+                         const std::vector<int>& which, int cut) const {
+    std::vector<const float*> rows((which.size() + 1) * index(kRows));
+    for (std::size_t t = 0; t < which.size(); ++t) {
       for (int r = 0; r < count; ++r)
-        rows[static_cast<std::size_t>(t * kRows + r)] = piece(t, first + r);
+        rows[t * index(kRows) + index(r)] = piece(which[t], first + r);
     }
-    std::vector<float> out(static_cast<std::size_t>(count * columns) + 1, 12345.0f);
-    std::vector<int> order(static_cast<std::size_t>(taps));
-    std::iota(order.begin(), order.end(), 0);
-    std::vector<float*> places;
-    for (int r = 0; r < count; ++r) places.push_back(out.data() + r * columns);
+    std::vector<float> out(index(count * columns) + 1, 12345.0f);
+    float* places[kRows] = {};
+    for (int r = 0; r < count; ++r) places[r] = &out[index(r * columns)];
+    const auto given = static_cast<int>(which.size());
     for (int panel = matrix.panels() - 1; panel >= 0; --panel) {
-      matrix.multiply({rows.data(), order.data(), taps, count, places.data(), nullptr}, taps, {},
-                      panel, panel + 1);
+      matrix.multiply({rows.data(), which.data(), given, count, places, nullptr}, cut, {}, panel,
+                      panel + 1);
     }
     EXPECT_EQ(out.back(), 12345.0f) << "written behind the last column";
     out.pop_back();
     return out;
+  }
+  std::vector<float> run(const PackedMatrix& matrix, int first, int count) const {
+    return run(matrix, first, count, all_taps(), taps);
   }
 
   int taps, depth, columns;
@@ -74,7 +84,7 @@ TEST(PackedMatrix, multiplies_as_the_sum_over_taps_and_depth) {
             for (int d = 0; d < product.depth; ++d)
               sum += product.piece(t, r)[d] * product.weight(t, d, c);
           }
-          EXPECT_NEAR(out[static_cast<std::size_t>(r * product.columns + c)], sum, 3e-5);
+          EXPECT_NEAR(out[index(r * product.columns + c)], sum, 3e-5);
         }
       }
     });
@@ -93,7 +103,7 @@ TEST(PackedMatrix, a_row_has_the_same_bytes_among_any_others) {
           for (int count = 1; first + count <= kRows; ++count) {
             const std::vector<float> some = product.run(matrix, first, count);
             EXPECT_EQ(
-                std::memcmp(some.data(), all.data() + first * columns, some.size() * sizeof(float)),
+                std::memcmp(some.data(), &all[index(first * columns)], some.size() * sizeof(float)),
                 0)
                 << count << " rows from " << first;
           }
@@ -101,6 +111,38 @@ TEST(PackedMatrix, a_row_has_the_same_bytes_among_any_others) {
       });
     }
   }
+}
+
+TEST(PackedMatrix, a_tap_left_out_is_one_of_zeros) {
+  Random random(104);
+  for (const Storage storage : {Storage::f32, Storage::bf16}) {
+    Product product(random, 9, 20, 70);
+    std::vector<int> left;
+    for (int tap = 0; tap < 9; ++tap) {
+      if (tap % 4 != 1) left.push_back(tap);
+    }
+    on_every_isa([&] {
+      const PackedMatrix matrix = product.packed(storage);
+      const std::vector<float> some = product.run(matrix, 0, kRows, left, 9);
+      Product zeroed = product;
+      for (const int tap : {1, 5}) {
+        for (int r = 0; r < kRows; ++r) {
+          std::fill_n(&zeroed.values[index((r * 9 + tap) * 20)], 20, 0.0f);
+        }
+      }
+      EXPECT_EQ(some, zeroed.run(matrix, 0, kRows));
+    });
+  }
+}
+
+TEST(PackedMatrix, taps_behind_each_other_may_be_multiplied_as_fewer) {
+  Random random(105);
+  const Product product(random, 6, 5, 33);
+  on_every_isa([&] {
+    const PackedMatrix matrix = product.packed();
+    const std::vector<float> expected = product.run(matrix, 0, kRows);
+    EXPECT_EQ(product.run(matrix, 0, kRows, {0}, 1), expected);
+  });
 }
 
 TEST(PackedMatrix, stays_with_the_instruction_set_it_was_packed_for) {

@@ -41,7 +41,7 @@ std::vector<double> window(const Values& in, int n, int y, int x, int c, const M
 }
 
 /// (values - mean) / sqrt(variance + 1e-5), in place, `divisor` under the sum of squares
-void normalise(std::vector<double*> values, double divisor) {
+void normalise(const std::vector<double*>& values, double divisor) {
   double mean = 0, squares = 0;
   for (const double* v : values) mean += *v / static_cast<double>(values.size());
   for (const double* v : values) squares += (*v - mean) * (*v - mean);
@@ -227,6 +227,7 @@ Values instance_norm(const Values& in) {
   for (int n = 0; n < in.shape.images; ++n) {
     for (int c = 0; c < in.shape.channels; ++c) {
       std::vector<double*> plane;
+      plane.reserve(in.values.size());
       for (int y = 0; y < in.shape.height; ++y) {
         for (int x = 0; x < in.shape.width; ++x) plane.push_back(&out.at(n, y, x, c));
       }
@@ -240,6 +241,7 @@ Values positional_norm(const Values& in) {
   Values out = in;
   for_pixels(in.shape, [&](int n, int y, int x) {
     std::vector<double*> channels;
+    channels.reserve(in.values.size());
     for (int c = 0; c < in.shape.channels; ++c) channels.push_back(&out.at(n, y, x, c));
     normalise(channels, in.shape.channels - 1);
   });
