@@ -58,4 +58,27 @@ const FileTensor& ProbeInput::take(const std::string& name,
   return tensor;
 }
 
+std::vector<std::int32_t> codes_of(const FileTensor& tensor) {
+  constexpr float kTooMuch = 1e6f;
+  std::vector<std::int32_t> codes;
+  for (const float value : tensor.as_floats()) {
+    codes.push_back(value >= 0 ? static_cast<std::int32_t>(std::min(value, kTooMuch)) : -1);
+  }
+  return codes;
+}
+
+std::vector<std::uint8_t> mask_of(const FileTensor& tensor) {
+  std::vector<std::uint8_t> mask;
+  for (const float value : tensor.as_floats()) mask.push_back(value != 0);
+  return mask;
+}
+
+outpaint::Order order_of(const ProbeInput& in) {
+  const FileTensor& background = in.take("bg256", {1, 0, 0});
+  std::vector<std::uint8_t> mask = mask_of(background);
+  const cv::Mat1b view(static_cast<int>(background.shape[1]), static_cast<int>(background.shape[2]),
+                       mask.data());
+  return outpaint::order_of(view);
+}
+
 }  // namespace ps::apps

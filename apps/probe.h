@@ -3,11 +3,13 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "apps/context.h"
 #include "io/safetensors.h"
+#include "libps/outpaint/order.h"
 
 namespace ps::apps {
 
@@ -40,8 +42,18 @@ class ProbeInput {
   TensorMap tensors_;
 };
 
+/// @brief Codes of any type of number; what is no code stays none: too much for any network, or
+/// below 0.
+std::vector<std::int32_t> codes_of(const FileTensor& tensor);
+/// @return 1 where the tensor is not 0
+std::vector<std::uint8_t> mask_of(const FileTensor& tensor);
+/// @brief The order for the tensor `bg256`, [1,H,W]. Throws ps::Error when its sides are no
+/// multiples of 8.
+outpaint::Order order_of(const ProbeInput& in);
+
 // Each adds modules to the verb.
 void add_probe_splat(CLI::App& probe, const Context& context);
 void add_probe_networks(CLI::App& probe, const Context& context);
+void add_probe_outpaint(CLI::App& probe, const Context& context);
 
 }  // namespace ps::apps

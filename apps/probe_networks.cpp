@@ -65,22 +65,6 @@ FileTensor planes_of(const nn::TensorView& view) {
   return FileTensor::of(planes, {size(s.images), size(s.channels), size(s.height), size(s.width)});
 }
 
-/// What is no code stays none, for the networks to name: too much, or below 0.
-std::vector<std::int32_t> codes_of(const FileTensor& tensor) {
-  constexpr float kTooMuch = 1e6f;
-  std::vector<std::int32_t> codes;
-  for (const float value : tensor.as_floats()) {
-    codes.push_back(value >= 0 ? static_cast<std::int32_t>(std::min(value, kTooMuch)) : -1);
-  }
-  return codes;
-}
-
-std::vector<std::uint8_t> mask_of(const FileTensor& tensor) {
-  std::vector<std::uint8_t> mask;
-  for (const float value : tensor.as_floats()) mask.push_back(value != 0);
-  return mask;
-}
-
 nn::Tensor like(const nn::Tensor& tensor, int channels) {
   nn::Shape shape = tensor.shape();
   shape.channels = channels;
@@ -127,8 +111,12 @@ void run_pixel_cnn(Job& job) {
   const FileTensor& grid = job.in.take("codes", {0, 0, 0});
   const std::size_t cells = grid.shape[1] * grid.shape[2];
   const auto mask = [&](const char* name) { return mask_of(job.in.take(name, {9, cells})); };
-  const models::LocalMasks masks = {mask("mask_init"), mask("mask_undilated"),
-                                    mask("mask_dilated")};
+  models::LocalMasks masks;
+  if (job.in.has("bg256")) {
+    masks = order_of(job.in).masks;
+  } else {
+    masks = {mask("mask_init"), mask("mask_undilated"), mask("mask_dilated")};
+  }
   auto codes = codes_of(grid);
   if (job.in.has("missing")) {
     const auto missing = mask_of(job.in.take("missing", {grid.shape[1], grid.shape[2]}));
@@ -213,8 +201,9 @@ constexpr Module kModules[] = {
      run_vq_encode},
     {"vq-decode", "codes [N,h,w] -> decoded [N,3,8h,8w], RGB about [-1,1].", run_vq_decode},
     {"pixelcnn",
-     "codes [N,h,w] (below 0: not yet sampled), mask_init, mask_undilated and mask_dilated [9,hw] "
-     "(0: hidden), and if it is there missing [h,w] (not 0: not yet sampled) -> logits [N,K,h,w].",
+     "codes [N,h,w] (below 0: not yet sampled), bg256 [1,8h,8w] (not 0: background) or mask_init, "
+     "mask_undilated and mask_dilated [9,hw] (0: hidden), and if it is there missing [h,w] (not 0: "
+     "not yet sampled) -> logits [N,K,h,w].",
      run_pixel_cnn},
     {"refine",
      "combined [N,3,H,W], RGB in [-1,1], sides multiples of 4, bg_dilated [N,H,W] (not 0: "

@@ -10,6 +10,7 @@ void add_probe(CLI::App& program, const Context& context) {
   probe->require_subcommand(1);
   add_probe_splat(*probe, context);
   add_probe_networks(*probe, context);
+  add_probe_outpaint(*probe, context);
 }
 
 }  // namespace ps::apps

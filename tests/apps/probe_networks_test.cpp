@@ -8,11 +8,15 @@
 #include "io/weights_file.h"
 #include "libps/models/classifier.h"
 #include "libps/models/lpips.h"
+#include "libps/outpaint/sampler.h"
 #include "tests/models/support.h"
 #include "tests/support/random_weights.h"
 
 namespace ps::models {
 namespace {
+
+using outpaint::Order;
+using outpaint::Sampler;
 
 const std::string kWeights = PS_DATA_DIR "/golden/weights.safetensors";
 
@@ -34,9 +38,9 @@ Outcome probe(const std::string& arguments, const std::string& weights, const Te
   const Folder folder;
   const std::string out = folder / "out.safetensors";
   write_safetensors(folder / "in.safetensors", in);
-  const std::string command = "'" PS_PROGRAM "' -q probe " + arguments + " --weights '" + weights +
-                              "' --in '" + (folder / "in.safetensors").string() + "' --out '" +
-                              out + "' 2>&1";
+  const std::string with = weights.empty() ? "" : " --weights '" + weights + "'";
+  const std::string command = "'" PS_PROGRAM "' -q --seed 3 probe " + arguments + with + " --in '" +
+                              (folder / "in.safetensors").string() + "' --out '" + out + "' 2>&1";
   Outcome outcome;
   FILE* pipe = popen(command.c_str(), "r");
   for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) {
@@ -171,6 +175,59 @@ TEST(ProbeNetworks, lpips_and_classifier_give_what_the_library_gives) {
   const FileTensor out = probed("classifier", weights, {{"input", planes_of(a)}}).at("logits");
   EXPECT_EQ(out.shape, (std::vector<std::size_t>{1, 6}));
   EXPECT_EQ(out.as_floats(), std::vector<float>(logits.data(), logits.data() + 6));
+}
+
+FileTensor golden_background_tensor() { return FileTensor::of(golden_background(), {1, 256, 256}); }
+
+TEST(ProbeOutpaint, order_equals_its_golden) {
+  const TensorMap out = probed("order", "", {{"bg256", golden_background_tensor()}});
+  for (const char* name : {"order", "distance32", "missing32"}) {
+    const FileTensor& expected = goldens().at(std::string("order.") + name);
+    EXPECT_EQ(out.at(name).shape, expected.shape) << name;
+    EXPECT_EQ(out.at(name).bytes, expected.bytes) << name;
+  }
+  EXPECT_EQ(out.at("mask_dilated").shape, (std::vector<std::size_t>{9, 1024}));
+}
+
+TEST(ProbeOutpaint, sample_gives_what_the_library_gives) {
+  const std::vector<std::int32_t> codes = ints_of(goldens().at("pixelcnn.codes"));
+  std::vector<std::uint8_t> background = golden_background();
+  const Order order = outpaint::order_of(cv::Mat1b(256, 256, background.data()));
+  const PixelCnn net(golden_weights());
+  const TensorMap in = {{"codes", goldens().at("pixelcnn.codes")},
+                        {"bg256", golden_background_tensor()}};
+  for (const double temperature : {0.0, 1.2}) {
+    outpaint::SampleOptions options;
+    options.seed = 3;
+    options.temperature = temperature;
+    const auto expected = Sampler(net, order, codes).sample(2, 1, options)[0];
+    const TensorMap out =
+        probed("sample --completion 2 " +
+                   (temperature > 0 ? std::string("--temperature 1.2") : "--greedy"),
+               kWeights, in);
+    EXPECT_EQ(ints_of(out.at("codes_out")), expected.codes);
+    const auto tokens = ints_of(out.at("tokens"));
+    std::size_t at = 0;
+    for (const int cell : order.cells) {
+      if (!order.missing[static_cast<std::size_t>(cell)]) continue;
+      ASSERT_LT(at + 2, tokens.size());
+      EXPECT_EQ(tokens[at] * 32 + tokens[at + 1], cell);
+      EXPECT_EQ(tokens[at + 2], expected.codes[static_cast<std::size_t>(cell)]);
+      at += 3;
+    }
+    EXPECT_EQ(at, tokens.size());
+  }
+}
+
+TEST(ProbeOutpaint, say_what_they_were_not_given) {
+  EXPECT_TRUE(has(refused("order", "", {{"bg", golden_background_tensor()}}), "bg256"));
+  EXPECT_TRUE(
+      has(refused("order", "", {{"bg256", FileTensor::of(std::vector<float>(12), {1, 3, 4})}}),
+          "multiples of 8"));
+  EXPECT_TRUE(
+      has(refused("sample", kWeights,
+                  {{"bg256", golden_background_tensor()}, {"codes", goldens().at("vq.clear")}}),
+          "[1,32,32]"));
 }
 
 TEST(ProbeNetworks, say_what_they_were_not_given) {

@@ -51,6 +51,14 @@ nn::Tensor golden_picture() {
   return tensor;
 }
 
+std::vector<std::uint8_t> golden_background() {
+  const std::vector<std::uint8_t> packed = bytes_of(goldens().at("order.bg256"));
+  std::vector<std::uint8_t> background;
+  for (std::size_t i = 0; i < 8 * packed.size(); ++i)
+    background.push_back(packed[i / 8] >> i % 8 & 1);
+  return background;
+}
+
 nn::Tensor golden_corner() {
   nn::Tensor corner = tensor_of(goldens().at("corner"));
   for (std::size_t i = 0; i < corner.shape().pixels() * 3; ++i) {

@@ -42,6 +42,9 @@ nn::Tensor golden_picture();
 /// The bottom right corner of a photo, RGB in [-1,1]: [1, 96, 96, 3].
 nn::Tensor golden_corner();
 
+/// The goldens' background mask: 256x256, with an island of what is known amid what is missing.
+std::vector<std::uint8_t> golden_background();
+
 /// @param planes  [images, channels, height, width]
 nn::Tensor tensor_of(const FileTensor& planes);
 std::vector<std::int32_t> ints_of(const FileTensor& tensor);

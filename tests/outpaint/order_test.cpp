@@ -44,6 +44,18 @@ INSTANTIATE_TEST_SUITE_P(cases, OrderReference,
                                          "allbg"),
                          [](const auto& test) { return std::string(test.param); });
 
+TEST(Order, equals_its_golden) {
+  const TensorMap& golden = models::goldens();
+  std::vector<std::uint8_t> background = models::golden_background();
+  const Order order = order_of(cv::Mat1b(256, 256, background.data()));
+  const auto expected = ints_of(golden.at("order.order"));
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    ASSERT_EQ(order.cells[i], expected[2 * i] * 32 + expected[2 * i + 1]) << "place " << i;
+  }
+  EXPECT_EQ(order.distance, ints_of(golden.at("order.distance32")));
+  EXPECT_EQ(order.missing, bytes_of(golden.at("order.missing32")));
+}
+
 /// The same by a search over all cells at every step.
 std::vector<int> slow_order(const Order& order) {
   const auto cells = static_cast<int>(order.size());

@@ -110,6 +110,27 @@ TEST(Sampler, teacher_forcing_reproduces_the_published_logits) {
   EXPECT_LE(worst, 5e-3);
 }
 
+TEST(Sampler, greedy_and_its_logits_equal_their_golden) {
+  const TensorMap& golden = models::goldens();
+  const PixelCnn network(models::golden_weights());
+  Sampler sampler(network, order_of_pairs(golden.at("greedy.order"), golden.at("greedy.missing32")),
+                  ints_of(golden.at("greedy.codes_in")));
+  Logits logits;
+  SampleOptions options;
+  options.temperature = 0;
+  options.observe = logits.observer(1024, network.codes());
+  EXPECT_EQ(sampler.sample(0, 1, options)[0].codes, ints_of(golden.at("greedy.codes_out")));
+  const auto steps = ints_of(golden.at("greedy.steps"));
+  const std::vector<float> expected = golden.at("greedy.step_logits").as_floats();
+  const auto codes = static_cast<std::size_t>(network.codes());
+  ASSERT_EQ(expected.size(), steps.size() / 2 * codes);
+  for (std::size_t i = 0; i < steps.size() / 2; ++i) {
+    const auto& got =
+        logits.by_cell[static_cast<std::size_t>(steps[2 * i] * 32 + steps[2 * i + 1])];
+    for (std::size_t k = 0; k < codes; ++k) ASSERT_NEAR(got[k], expected[i * codes + k], 5e-3);
+  }
+}
+
 /// Every completion's logits are those of a whole forward over its codes, for any order, mask and
 /// weights.
 TEST(Sampler, incremental_logits_equal_those_of_a_full_forward) {

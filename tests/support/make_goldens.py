@@ -98,7 +98,8 @@ def write(path, tensors):
 
 def used_codes(cnn, greedy):
     """The codes of the PixelCNN's case R and of its greedy completion."""
-    return sorted(set(cnn["R.codes"].values) | set(greedy["codes_out"].values))
+    return sorted(set(cnn["R.codes"].values) | set(greedy["codes_out"].values) |
+                  set(greedy["codes_in"].values))
 
 
 def kept_weights(weights, codes):
@@ -150,6 +151,29 @@ def kept_results(folder, codes):
     }
     for mask in ("mask_init", "mask_undilated", "mask_dilated"):
         kept["pixelcnn." + mask] = order["R." + mask]
+    kept.update(kept_completion(read(folder + "/h_greedy.safetensors"), codes))
+    kept["order.bg256"] = packed(order["island.bg256"])
+    for name in ("order", "distance32", "missing32"):
+        kept["order." + name] = order["island." + name]
+    return kept
+
+
+def packed(mask):
+    """Eight pixels of a row in a byte, the first in its lowest bit."""
+    bits = mask.values
+    return Tensor("U8", mask.shape[:-1] + [mask.shape[-1] // 8],
+                  [sum((bits[i + k] != 0) << k for k in range(8)) for i in range(0, len(bits), 8)])
+
+
+def kept_completion(greedy, codes):
+    """The greedy completion, and the logits of every 45th of its 450 steps."""
+    number = {code: i for i, code in enumerate(codes)}
+    kept = {"greedy." + name: Tensor("I32", greedy[name].shape, [number[c] for c in greedy[name].values])
+            for name in ("codes_in", "codes_out")}
+    kept["greedy.order"], kept["greedy.missing32"] = greedy["order"], greedy["missing32"]
+    steps = range(0, greedy["tokens"].shape[0], 45)
+    kept["greedy.steps"] = greedy["tokens"].take(0, steps).take(1, [0, 1])
+    kept["greedy.step_logits"] = greedy["step_logits"].take(0, steps).take(1, codes)
     return kept
 
 
