@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kFewChannels = 8;               ///< up to so many, patches are copied into rows
 constexpr int kWinogradChannels = 16;         ///< fewer do not pay for the transforms
-constexpr std::size_t kWinogradPixels = 256;  ///< of the output; nor do fewer of these
+constexpr int kWinogradPixels = 256;  ///< of an output image; nor do fewer of these
 
 /// The patches of output pixels, in their order.
 class Patches {
@@ -165,7 +165,7 @@ void Convolution::operator()(const TensorView& in, const TensorView& out, Worksp
   Epilogue epilogue = given;
   epilogue.bias = bias_.empty() ? nullptr : bias_.data();
   const bool forced = options_.method == Method::winograd;
-  if (winograd_ && (forced || out.shape.pixels() >= kWinogradPixels)) {
+  if (winograd_ && (forced || out.shape.height * out.shape.width >= kWinogradPixels)) {
     winograd_convolution(*winograd_, in, options_.padding, out, epilogue, prologue);
   } else if (prologue.scale) {
     const Workspace::Scope scope(workspace);
