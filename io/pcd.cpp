@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/pcd.h"
 
-#include <pcl/io/lzf.h>
-
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -11,6 +9,7 @@
 #include "io/bytes.h"
 #include "io/cloud_fields.h"
 #include "io/cloud_file.h"
+#include "io/lzf.h"
 #include "io/text.h"
 
 namespace ps {
@@ -158,12 +157,9 @@ std::string decompressed(const Header& header, const LineReader& lines) {
   const std::size_t plain = load<std::uint32_t>(data.data() + 4);
   // LZF makes at most 264 bytes of three.
   if (packed > data.size() - 8 || plain > packed * 88) too_short(header, data.size(), lines);
-  std::string block(plain, '\0');
-  if (plain > 0 && pcl::lzfDecompress(data.data() + 8, static_cast<unsigned>(packed), block.data(),
-                                      static_cast<unsigned>(plain)) != plain) {
-    throw Error(lines.where(), "the compressed block is damaged", "LZF");
-  }
-  return block;
+  std::optional<std::string> block = lzf_decompress(data.substr(8, packed), plain);
+  if (!block) throw Error(lines.where(), "the compressed block is damaged", "LZF");
+  return std::move(*block);
 }
 
 /// Field after field, each for all points. PCL leaves fields called `_` out of the block.
@@ -234,16 +230,10 @@ std::string compressed_block(const Cloud& cloud, const std::string& where) {
                 "an uncompressed PCD, or a PLY");
   }
   const std::string plain = packed(cloud, true);
-  std::string block(8 + plain.size() / 32 * 33 + 64, '\0');
-  const unsigned size =
-      plain.empty() ? 0
-                    : pcl::lzfCompress(plain.data(), static_cast<unsigned>(plain.size()),
-                                       block.data() + 8, static_cast<unsigned>(block.size() - 8));
-  if (size == 0 && !plain.empty()) throw Error(where, "compression failed", "an uncompressed PCD");
-  const std::uint32_t sizes[2] = {size, static_cast<std::uint32_t>(plain.size())};
-  std::memcpy(block.data(), sizes, sizeof sizes);
-  block.resize(8 + size);
-  return block;
+  const std::string block = lzf_compress(plain);
+  const std::uint32_t sizes[2] = {static_cast<std::uint32_t>(block.size()),
+                                  static_cast<std::uint32_t>(plain.size())};
+  return std::string(reinterpret_cast<const char*>(sizes), sizeof sizes) + block;
 }
 
 std::string header_text(std::size_t points, bool compressed, const std::string& up) {
