@@ -12,7 +12,6 @@
 #include "apps/report.h"
 #include "io/cloud_file.h"
 #include "io/depth_file.h"
-#include "io/image_bytes.h"
 #include "io/intrinsics_file.h"
 #include "io/photo.h"
 #include "io/trajectory.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Internal to the io room: files as bytes, and numbers in them.
 #pragma once
 
 #include <algorithm>

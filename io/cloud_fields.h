@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Internal to the io room: what PLY and PCD readers share.
 #pragma once
 
 #include <cstddef>

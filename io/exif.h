@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Internal to the io room: what a photo says of its making.
 #pragma once
 
 #include <opencv2/core/types.hpp>

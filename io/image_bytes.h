@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Internal to the io room: encoded images, checked before a decoder sees them.
 #pragma once
 
-#include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -28,15 +27,5 @@ void encode_image(const std::filesystem::path& path, const cv::Mat& image);
 
 /// @return 8-bit BGR as OpenCV's encoders take it; clamped and rounded, NaN is 0
 cv::Mat3b to_bgr8(const Image& image);
-
-/// @return whether one size is the other, resized: sides may differ by a pixel's rounding, but the
-/// aspects by 2 % at most, as a pixel is much of a small side
-inline bool same_aspect(cv::Size a, cv::Size b) {
-  const double across = static_cast<double>(a.width) * b.height;
-  const double along = static_cast<double>(b.width) * a.height;
-  const double difference = std::abs(across - along);
-  return difference <= std::max<double>(a.width + a.height, b.width + b.height) &&
-         difference <= 0.02 * std::max(across, along);
-}
 
 }  // namespace ps

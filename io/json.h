@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Internal to the io room: numbers of a JSON file.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Internal to the io room: the boxes of a video file.
 #pragma once
 
 #include <string>

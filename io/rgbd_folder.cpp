@@ -8,7 +8,6 @@
 
 #include "io/bytes.h"
 #include "io/depth_file.h"
-#include "io/image_bytes.h"
 #include "io/intrinsics_file.h"
 #include "io/photo.h"
 #include "io/text.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Internal to the io room: lines and words of text files.
 #pragma once
 
 #include <charconv>

@@ -5,7 +5,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "io/image_bytes.h"
-#include "io/image_bytes.h"
 #include "libps/geometry/camera.h"
 #include "tests/io/support.h"
 

@@ -2,7 +2,6 @@
 #include "io/rgbd_folder.h"
 
 #include "io/depth_file.h"
-#include "io/image_bytes.h"
 #include "io/intrinsics_file.h"
 #include "io/photo.h"
 #include "tests/io/support.h"
