@@ -68,6 +68,7 @@ int run(int argc, char** argv) {
   add_render(program, context);
   add_view(program, context);
   add_probe(program, context);
+  add_weights(program, context);
   program.require_subcommand(0, 1);
   try {
     program.parse(argc, argv);

@@ -31,5 +31,6 @@ void add_render(CLI::App& program, const Context& context);
 void add_view(CLI::App& program, const Context& context);
 void add_scene(CLI::App& program, const Context& context);
 void add_probe(CLI::App& program, const Context& context);
+void add_weights(CLI::App& program, const Context& context);
 
 }  // namespace ps::apps

@@ -150,6 +150,23 @@ void write_tensors(const fs::path& dir) {
   write_safetensors(dir / "misfit.safetensors", tensors);
 }
 
+void write_weights(const fs::path& dir) {
+  TensorMap tensors;
+  const std::string prefix = "model.module.vqvae.";
+  tensors[prefix + "a.weight"] = FileTensor::of(std::vector<float>{1, 2, 3, 4, 5, 1000}, {2, 3});
+  tensors[prefix + "a.count"] = FileTensor::of(std::vector<std::int32_t>{7}, {});
+  tensors["fc.bias"] = FileTensor::of(std::vector<float>{0.5f, -0.5f}, {2});
+  write_safetensors(dir / "weights.safetensors", tensors);
+  tensors["fc.weight"] = FileTensor::of(std::vector<float>{1, std::nanf(""), 1e5f}, {3});
+  write_safetensors(dir / "bad_weights.safetensors", tensors);
+  tensors["vqvae.a.weight"] = tensors[prefix + "a.weight"];
+  write_safetensors(dir / "twice.safetensors", tensors);
+  // What a pickle of os.system("touch ran") looks like, as a checkpoint of torch begins.
+  write_text(dir / "hostile.pth",
+             std::string("\x80\2\x8a\x0a\x6c\xfc\x9c\x46\xf9\x20\x6a\xa8\x50\x19.") +
+                 "\x80\2M\xe9\3.\x80\2}.\x80\2cos\nsystem\nU\x09touch ran\x85R.");
+}
+
 }  // namespace
 }  // namespace ps
 
@@ -165,6 +182,7 @@ int main(int argc, char** argv) try {
   ps::write_clouds(dir);
   ps::write_bad_files(dir);
   ps::write_tensors(dir);
+  ps::write_weights(dir);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "make_samples: %s\n", error.what());
