@@ -6,11 +6,11 @@
 #include <cstdio>
 
 #include "apps/output.h"
+#include "apps/part.h"
 #include "io/depth_file.h"
 #include "io/intrinsics_file.h"
 #include "io/photo.h"
 #include "io/trajectory.h"
-#include "io/video.h"
 #include "libps/core/error.h"
 
 namespace fs = std::filesystem;
@@ -57,18 +57,6 @@ class FolderSink : public FrameSink {
   std::size_t count_ = 0;
 };
 
-class VideoSink : public FrameSink {
- public:
-  VideoSink(const fs::path& path, cv::Size size, double frames_per_second)
-      : writer_(path, size, frames_per_second) {}
-
-  void add(const Splat& frame) override { writer_.add(frame.color); }
-  void finish(const std::vector<Pose>&, const Intrinsics&) override { writer_.close(); }
-
- private:
-  VideoWriter writer_;
-};
-
 class PictureSink : public FrameSink {
  public:
   PictureSink(const fs::path& path, const SinkOptions& options) : path_(path), options_(options) {
@@ -99,7 +87,9 @@ std::unique_ptr<FrameSink> make_frame_sink(const fs::path& path, cv::Size size,
   if (extension == ".png") return std::make_unique<PictureSink>(path, options);
   if (extension == ".mp4") {
     check_output_file(path, {".mp4"});
-    return std::make_unique<VideoSink>(path, size, options.frames_per_second);
+    const auto video_sink =
+        function_of_part<decltype(pixelsynth_video_sink)>("video", "pixelsynth_video_sink");
+    return std::unique_ptr<FrameSink>(video_sink(path, size, options.frames_per_second));
   }
   if (std::find(kOthers.begin(), kOthers.end(), extension) != kOthers.end()) {
     throw Error(path.string(), "is no kind of file that can be written here",

@@ -32,4 +32,9 @@ class FrameSink {
 std::unique_ptr<FrameSink> make_frame_sink(const std::filesystem::path& path, cv::Size size,
                                            const SinkOptions& options);
 
+/// What it calls for a video, in the part `video` of the program (part.h); the caller owns the
+/// sink.
+extern "C" FrameSink* pixelsynth_video_sink(const std::filesystem::path& path, const cv::Size& size,
+                                            double frames_per_second);
+
 }  // namespace ps::apps

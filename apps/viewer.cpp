@@ -208,7 +208,7 @@ void check_ready(const Cloud& cloud, vtkRenderWindow& window) {
 
 }  // namespace
 
-void show(const Cloud& cloud, const ViewerOptions& options) {
+void pixelsynth_show(const Cloud& cloud, const ViewerOptions& options) {
   vtkObject::GlobalWarningDisplayOff();
   Window window(cloud, options, true);
   vtkNew<vtkRenderWindowInteractor> interactor;
@@ -221,7 +221,7 @@ void show(const Cloud& cloud, const ViewerOptions& options) {
   interactor->Start();
 }
 
-Image snapshot(const Cloud& cloud, const ViewerOptions& options) {
+void pixelsynth_snapshot(const Cloud& cloud, const ViewerOptions& options, Image* picture) {
   vtkObject::GlobalWarningDisplayOff();
   Window window(cloud, options, false);
   check_ready(cloud, window.render_window());
@@ -233,10 +233,8 @@ Image snapshot(const Cloud& cloud, const ViewerOptions& options) {
   vtkImageData* grabbed = grab->GetOutput();
   const int* size = grabbed->GetDimensions();
   const cv::Mat3b bytes(size[1], size[0], static_cast<cv::Vec3b*>(grabbed->GetScalarPointer()));
-  Image image;
-  bytes.convertTo(image, CV_32F, 1 / 255.0);
-  cv::flip(image, image, 0);  // VTK's rows go upwards
-  return image;
+  bytes.convertTo(*picture, CV_32F, 1 / 255.0);
+  cv::flip(*picture, *picture, 0);  // VTK's rows go upwards
 }
 
 }  // namespace ps::apps

@@ -30,4 +30,10 @@ void show(const Cloud& cloud, const ViewerOptions& options);
 /// throws as show() does.
 Image snapshot(const Cloud& cloud, const ViewerOptions& options);
 
+/// What these two call, in the part `viewer` of the program (part.h).
+extern "C" {
+void pixelsynth_show(const Cloud& cloud, const ViewerOptions& options);
+void pixelsynth_snapshot(const Cloud& cloud, const ViewerOptions& options, Image* picture);
+}
+
 }  // namespace ps::apps

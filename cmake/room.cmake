@@ -6,6 +6,8 @@ add_library(pixelsynth_flags INTERFACE)
 target_compile_options(pixelsynth_flags INTERFACE -Wall -Wextra -Wshadow -Wnon-virtual-dtor
   # One rounding for each operation, on every machine: results are the same bytes everywhere.
   -ffp-contract=off)
+# Loading a library takes time, be it used or not.
+target_link_options(pixelsynth_flags INTERFACE LINKER:--as-needed)
 if(PIXELSYNTH_WERROR)
   target_compile_options(pixelsynth_flags INTERFACE -Werror)
 endif()

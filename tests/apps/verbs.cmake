@@ -142,6 +142,11 @@ app_test(render_writes_h264_that_browsers_play [=[
   works render $S/mixed.ply -o r.mp4 --frames 8 --size 75x51 --fps 10
   ffprobe -v error -show_entries stream=codec_name,pix_fmt,width,height,nb_frames -of csv=p=0 r.mp4 > probe.txt
   grep -qx 'h264,76,52,yuv420p,8' probe.txt || complain "$(cat probe.txt)"]=])
+app_test(a_part_that_is_not_beside_the_program_is_named [=[
+  cp "$program" alone
+  program=./alone
+  fails 1 'video: libpixelsynth_video.so' -q render $S/mixed.ply -o r.mp4
+  works render $S/mixed.ply -o r.png]=])
 app_test(render_picks_points_by_origin [=[
   works --json render $S/mixed.ply -o r.png
   all=$(json points "$work/out")
