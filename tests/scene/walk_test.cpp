@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <opencv2/imgproc.hpp>
 
 #include "io/rgbd_folder.h"
+#include "libps/core/parallel.h"
+#include "libps/eval/cloud_metrics.h"
 #include "libps/eval/depth_metrics.h"
 #include "libps/eval/image_metrics.h"
 #include "libps/geometry/splat.h"
@@ -71,6 +74,79 @@ TEST_F(Walk, the_same_frame_twice_adds_nothing) {
     EXPECT_EQ(report.added, 0u) << folder_.frames[i].depth;
     EXPECT_EQ(scene.size(), before);
   }
+}
+
+/// Every `step`th frame.
+std::vector<RgbdFrame> thinned(const std::vector<RgbdFrame>& frames, std::size_t step) {
+  std::vector<RgbdFrame> some;
+  for (std::size_t i = 0; i < frames.size(); i += step) some.push_back(frames[i]);
+  return some;
+}
+
+TEST_F(Walk, threads_change_no_byte) {
+  const std::vector<RgbdFrame> frames = thinned(folder_.frames, 10);
+  set_threads(1);
+  const Cloud one = fuse(source(frames));
+  set_threads(3);
+  const Cloud three = fuse(source(frames));
+  set_threads(0);
+  EXPECT_GT(one.size(), 50000u);
+  EXPECT_TRUE(same_points(one, three));
+}
+
+TEST_F(Walk, the_order_of_frames_does_not_change_the_surface) {
+  std::vector<RgbdFrame> frames = thinned(folder_.frames, 20);
+  const Cloud forwards = fuse(source(frames));
+  std::reverse(frames.begin(), frames.end());
+  const Cloud backwards = fuse(source(frames));
+  EXPECT_NEAR(static_cast<double>(forwards.size()) / static_cast<double>(backwards.size()), 1, 0.1);
+  const CloudScore score = cloud_scores(forwards, backwards, {0.02}).front();
+  std::printf("forwards %zu points, backwards %zu: F-score at 2 cm %.4f\n", forwards.size(),
+              backwards.size(), score.f_score);
+  EXPECT_GT(score.f_score, 0.98);
+}
+
+/// A splat at one camera, warped by a homography, against the splat at another: PSNR where both
+/// have points, dB.
+double psnr_through(const cv::Matx33d& homography, const Splat& from, const Splat& to) {
+  Image warped;
+  Mask covered, all = from.hit * 255;
+  cv::warpPerspective(from.color, warped, homography, from.color.size());
+  cv::warpPerspective(all, covered, homography, all.size());
+  covered = (covered == 255) & (to.hit * 255);
+  EXPECT_GT(cv::countNonZero(covered), static_cast<int>(covered.total()) / 3);
+  return psnr(warped, to.color, covered);
+}
+
+TEST_F(Walk, pure_rotations_are_related_by_the_homography) {
+  const View view = load_frame(folder_, folder_.frames[30]);
+  const Cloud cloud = lift(view);
+  const Intrinsics& k = view.intrinsics;
+  SplatOptions options;
+  options.radius = 1.5f;
+  options.renormalise = true;
+  const auto turned = [&](double yaw, double pitch) {
+    Pose pose = view.world_from_cam;
+    pose.rotate(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitY()) *
+                Eigen::AngleAxisd(pitch, Eigen::Vector3d::UnitX()));
+    return pose;
+  };
+  const Pose left = turned(-0.12, 0.03), right = turned(0.15, -0.05);
+  const Splat from = splat(cloud, k, left, options), to = splat(cloud, k, right, options);
+  Eigen::Matrix3d lens;
+  lens << k.fx, 0, k.cx, 0, k.fy, k.cy, 0, 0, 1;
+  const Eigen::Matrix3d h = lens * right.linear().transpose() * left.linear() * lens.inverse();
+  const auto shifted = [&](double pixels) {
+    return cv::Matx33d(1, 0, pixels, 0, 1, 0, 0, 0, 1) * cv::Matx33d(h(0, 0), h(0, 1), h(0, 2),
+                                                                     h(1, 0), h(1, 1), h(1, 2),
+                                                                     h(2, 0), h(2, 1), h(2, 2));
+  };
+  const double exact = psnr_through(shifted(0), from, to);
+  std::printf("PSNR through the homography %.2f dB, one pixel beside %.2f and %.2f dB\n", exact,
+              psnr_through(shifted(1), from, to), psnr_through(shifted(-1), from, to));
+  EXPECT_GT(exact, 25);
+  EXPECT_GT(exact, psnr_through(shifted(1), from, to) + 2);
+  EXPECT_GT(exact, psnr_through(shifted(-1), from, to) + 2);
 }
 
 TEST_F(Walk, every_tenth_frame_is_rendered_from_the_others) {
