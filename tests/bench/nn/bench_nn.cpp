@@ -157,7 +157,7 @@ void memory_of(const std::string& name) {
   std::printf("there is no module '%s'\n", name.c_str());
 }
 
-void run(const std::string& json_file) {
+void run(const std::string& json_file, const std::string& only) {
   std::printf("instruction set %s, %d threads\n", nn::to_string(nn::isa()).c_str(), threads());
   const Peak peak = bench::peak();
   Json json = {{"isa", nn::to_string(nn::isa())},
@@ -170,9 +170,10 @@ void run(const std::string& json_file) {
               "direct", "default", "oneDNN", "default", "error of", "", "ms", "peak", "ms", "peak",
               "ms", "peak", "/oneDNN");
   for (const ConvolutionCase& c : kConvolutions)
-    json["convolutions"].push_back(time_convolution(c, peak));
+    if (only.empty()) json["convolutions"].push_back(time_convolution(c, peak));
   std::printf("\n");
   for (const Module& module : modules()) {
+    if (!only.empty() && module.name != only) continue;
     for (const Json& row : time_module(module, peak)) json["modules"].push_back(row);
   }
   bench::peak();
@@ -184,9 +185,10 @@ void run(const std::string& json_file) {
 
 int main(int argc, char** argv) {
   CLI::App app("Times operators and networks.");
-  std::string json, memory, isa;
+  std::string json, memory, isa, only;
   int threads = 0;
   app.add_option("--json", json, "File to write");
+  app.add_option("--only", only, "Only this module");
   app.add_option("--memory", memory, "Only the peak memory of this module");
   app.add_option("--isa", isa, "baseline, avx2 or avx512");
   app.add_option("--threads", threads, "0 = one for each core");
@@ -198,6 +200,6 @@ int main(int argc, char** argv) {
   if (!memory.empty()) {
     ps::bench::memory_of(memory);
   } else {
-    ps::bench::run(json);
+    ps::bench::run(json, only);
   }
 }
