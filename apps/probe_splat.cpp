@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <memory>
 
 #include "apps/interrupt.h"
@@ -19,8 +20,8 @@ struct SplatArguments {
 };
 
 /// @return points of the published rasteriser's plane (x left, y up, in [-1,1]; SPEC.md 4) in
-/// pixels
-PlanePoints read_points(const SplatArguments& a) {
+/// pixels; one whose numbers are not all finite has depth 0, at which none is drawn
+PlanePoints read_points(const SplatArguments& a, const Context& context) {
   const ProbeInput in(a.files);
   const FileTensor &points = in.take("points"), &features = in.take("features");
   const std::size_t count = points.shape.empty() ? 0 : points.shape[0];
@@ -30,12 +31,22 @@ PlanePoints read_points(const SplatArguments& a) {
   }
   const std::vector<float> xyz = points.as_floats(), colors = features.as_floats();
   PlanePoints plane;
+  std::size_t skipped = 0;
   const double half = a.size / 2.0;
   for (std::size_t i = 0; i < count; ++i) {
     plane.u.push_back(static_cast<float>((1.0 - xyz[3 * i]) * half - 0.5));
     plane.v.push_back(static_cast<float>((1.0 - xyz[3 * i + 1]) * half - 0.5));
     plane.z.push_back(xyz[3 * i + 2]);
     plane.color.emplace_back(colors[i], colors[count + i], colors[2 * count + i]);
+    const cv::Vec3f& c = plane.color.back();
+    if (!std::isfinite(plane.u[i] + plane.v[i] + plane.z[i] + c[0] + c[1] + c[2])) {
+      plane.z[i] = 0;
+      ++skipped;
+    }
+  }
+  if (skipped > 0) {
+    context.warn(a.files.in + ": " + std::to_string(skipped) +
+                 " points are not finite and are left out");
   }
   return plane;
 }
@@ -71,7 +82,7 @@ TensorMap tensors_of(const Splat& splat) {
 void run_splat(const SplatArguments& a, const Context& context) {
   check_output_file(a.files.out, {".safetensors"});
   note_interrupts();
-  const PlanePoints points = read_points(a);
+  const PlanePoints points = read_points(a, context);
   SplatOptions options = a.splat;
   options.near = 0;
   options.count_hits = true;
@@ -96,14 +107,14 @@ void add_probe_splat(CLI::App& probe, const Context& context) {
   add_files(*verb, a->files);
   verb->add_option("--size", a->size, "Side of the image in pixels")
       ->type_name("S")
-      ->check(in_range(1, 8192));
+      ->check(whole_in(1, 8192));
   verb->add_option("--radius", a->splat.radius, "Radius of a splat in pixels")
       ->type_name("PX")
       ->check(in_range(0.01, 64));
   verb->add_option("--points-per-pixel", a->splat.points_per_pixel,
                    "Only the nearest so many points of a pixel count")
       ->type_name("N")
-      ->check(in_range(1, 65536));
+      ->check(whole_in(1, 65536));
   verb->callback([a, &context] { run_splat(*a, context); });
 }
 

@@ -146,6 +146,11 @@ void write_tensors(const fs::path& dir) {
   tensors["points"] = FileTensor::of(std::vector<float>{0.5f, 0.5f, 1, 0, 0, 2}, {2, 3});
   tensors["features"] = FileTensor::of(std::vector<float>{1, -1, 0, 0.5f, 0, 0}, {3, 2});
   write_safetensors(dir / "two.safetensors", tensors);
+  const float nan = std::nanf("");
+  tensors["features"] = FileTensor::of(std::vector<float>{1, -1, 0, nan, 0, 0}, {3, 2});
+  tensors["nan.points"] = FileTensor::of(std::vector<float>{nan, 0.5f, 1, 0, 0, 2}, {2, 3});
+  tensors["nan.features"] = FileTensor::of(std::vector<float>{1, -1, 0, 0.5f, 0, 0}, {3, 2});
+  write_safetensors(dir / "nan.safetensors", tensors);
   tensors["features"] = FileTensor::of(std::vector<float>{1, 2}, {1, 2});
   write_safetensors(dir / "misfit.safetensors", tensors);
 }

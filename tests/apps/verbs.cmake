@@ -224,3 +224,8 @@ app_test(view_without_xvfb_says_what_to_install [=[
 app_test(probe_splat_writes_all_tensors [=[
   works probe splat --in $S/two.safetensors --out o.safetensors --size 16
   for t in image count idx4 bg_raw bg_dilated; do head -c 600 o.safetensors | grep -aq "\"$t\"" || complain "$t is missing"; done]=])
+app_test(probe_splat_warns_of_points_that_are_not_finite [=[
+  for prefix in "" nan.; do
+    works probe splat --in $S/nan.safetensors --prefix "$prefix" --out o.safetensors --size 16
+    says 'warning.*nan.safetensors: 1 points are not finite'
+  done]=])
