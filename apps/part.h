@@ -7,7 +7,7 @@ namespace ps::apps {
 
 /// @brief The address of a function in a part of the program that is loaded when it is first used,
 /// as it brings many libraries along: `viewer` (VTK) or `video` (FFmpeg). Part NAME is the shared
-/// library libpixelsynth_NAME.so on the program's run path.
+/// library libpixelsynth_NAME.so beside the program, or where its install put it.
 /// Throws ps::Error when the part cannot be loaded or has no such function.
 void* address_in_part(const std::string& part, const char* function);
 

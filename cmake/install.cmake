@@ -8,11 +8,7 @@ get_property(rooms GLOBAL PROPERTY PIXELSYNTH_ROOMS)
 install(TARGETS ${rooms} pixelsynth_pcl EXPORT pixelsynth-targets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS pixelsynth RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-set(parts ${CMAKE_INSTALL_LIBDIR}/pixelsynth)
-# For both trees: CMake would fill up the build's run path with the working folder.
-set_target_properties(pixelsynth PROPERTIES
-  BUILD_WITH_INSTALL_RPATH ON INSTALL_RPATH "$ORIGIN;$ORIGIN/../${parts}")
-install(TARGETS pixelsynth_viewer pixelsynth_video LIBRARY DESTINATION ${parts})
+install(TARGETS pixelsynth_viewer pixelsynth_video LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/pixelsynth)
 
 # A header that says "// Internal to ..." first is its room's own affair.
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} libps/*.h io/*.h)
