@@ -38,7 +38,7 @@ sanitized() {
   build asan
   suite "address, undefined" asan
   export TSAN_OPTIONS=suppressions=$root/tests/tsan.supp
-  build tsan core_test geometry_test scene_test
+  build tsan core_test geometry_test nn_test models_test outpaint_test scene_test
   suite threads tsan -E '_NOT_BUILT|^Apps|^Install'
   build fuzz "${readers[@]%.cpp}"
   if "$root/tests/fuzz/run.sh"; then

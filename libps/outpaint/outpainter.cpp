@@ -70,16 +70,14 @@ void check(const OutpaintOptions& options) {
   }
 }
 
-/// The numbers of the `count` completions of greatest log-likelihood, rising; all when count is 0.
-std::vector<int> likeliest(const std::vector<Completion>& completions, int count) {
-  std::vector<int> numbers(completions.size());
+/// The numbers of the `count` greatest scores, rising.
+std::vector<int> greatest(const std::vector<double>& scores, int count) {
+  std::vector<int> numbers(scores.size());
   std::iota(numbers.begin(), numbers.end(), 0);
-  if (count == 0 || static_cast<std::size_t>(count) >= numbers.size()) return numbers;
   std::stable_sort(numbers.begin(), numbers.end(), [&](int a, int b) {
-    return completions[static_cast<std::size_t>(a)].log_likelihood >
-           completions[static_cast<std::size_t>(b)].log_likelihood;
+    return scores[static_cast<std::size_t>(a)] > scores[static_cast<std::size_t>(b)];
   });
-  numbers.resize(static_cast<std::size_t>(count));
+  numbers.resize(std::min(numbers.size(), static_cast<std::size_t>(count)));
   std::sort(numbers.begin(), numbers.end());
   return numbers;
 }
@@ -163,24 +161,49 @@ void Outpainter::refine(View& view) {
   view.whole_done = true;
 }
 
+void Outpainter::score(View& view, const nn::TensorView& image, const Completion& completion,
+                       std::vector<Signal>& signals) {
+  const Clock clock(view.result.report.score_seconds);
+  std::size_t signal = 0;
+  for (const Scorer& scorer : networks_.scorers) {
+    signals[signal++].scores.push_back(scorer.score(image, workspace_));
+  }
+  if (signal < signals.size()) signals[signal].scores.push_back(completion.log_likelihood);
+}
+
 void Outpainter::refine_and_score(View& view, const std::vector<int>& numbers) {
   Outpainted& result = view.result;
   for (const int number : numbers) {
     const Completion& completion = view.completions[static_cast<std::size_t>(number)];
     decode(view, completion);
     refine(view);
-    const Clock clock(result.report.score_seconds);
-    std::size_t signal = 0;
-    for (const Scorer& scorer : networks_.scorers) {
-      view.signals[signal++].scores.push_back(scorer.score(view.image, workspace_));
-    }
-    if (signal < view.signals.size()) {
-      view.signals[signal].scores.push_back(completion.log_likelihood);
-    }
+    score(view, view.image, completion, view.signals);
     result.refined.push_back(number);
   }
   result.totals = totals(view.signals);
   result.best = result.refined[best_of(result.totals)];
+}
+
+/// The numbers of the completions that are worth refining.
+std::vector<int> Outpainter::screened(View& view) {
+  const int count = view.options.refine_best;
+  if (count == 0 || static_cast<std::size_t>(count) >= view.completions.size()) {
+    std::vector<int> all(view.completions.size());
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+  std::vector<double> likelihoods;
+  std::vector<Signal> signals = view.signals;
+  nn::Tensor picture({1, view.size.height, view.size.width, 3});
+  for (const Completion& completion : view.completions) {
+    likelihoods.push_back(completion.log_likelihood);
+    if (view.options.screen == OutpaintOptions::Screen::likelihood) continue;
+    decode(view, completion);
+    copy(view.combined, {}, picture, {}, view.size, 3);
+    score(view, picture, completion, signals);
+  }
+  const bool cheapest = view.options.screen == OutpaintOptions::Screen::likelihood;
+  return greatest(cheapest ? likelihoods : totals(signals), count);
 }
 
 bool Outpainter::draw(View& view, Sampler& sampler) {
@@ -212,7 +235,7 @@ bool Outpainter::draw(View& view, Sampler& sampler) {
     if (view.result.best == leader && drawn >= 2 * (leader + 1)) break;
     leader = view.result.best;
   }
-  if (!o.until_settled) refine_and_score(view, likeliest(view.completions, o.refine_best));
+  if (!o.until_settled) refine_and_score(view, screened(view));
   return true;
 }
 

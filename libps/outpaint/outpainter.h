@@ -40,8 +40,13 @@ struct OutpaintOptions {
   std::uint64_t seed = 0;
   std::uint32_t view = 0;
   bool likelihood = false;  ///< count the PixelCNN's own mean log-likelihood as a signal
-  /// Refine and score only so many, the best by log-likelihood; 0 = all.
+  /// Refine and score only so many, the best by a cheaper score; 0 = all.
   int refine_best = 0;
+  enum class Screen {
+    likelihood,  ///< the PixelCNN's own mean log-likelihood: costs nothing
+    unrefined,   ///< the same scorers, on the picture before the refiner
+  };
+  Screen screen = Screen::unrefined;
   /// Told what share of the sampling is done; returns false to stop.
   std::function<bool(double done)> progress;
 };
@@ -95,6 +100,9 @@ class Outpainter {
   void prepare(View& view, const nn::TensorView& projection) const;
   std::vector<std::int32_t> encode(View& view, const nn::TensorView& projection);
   bool draw(View& view, Sampler& sampler);
+  std::vector<int> screened(View& view);
+  void score(View& view, const nn::TensorView& image, const Completion& completion,
+             std::vector<Signal>& signals);
   void refine_and_score(View& view, const std::vector<int>& numbers);
   void decode(View& view, const Completion& completion);
   void refine(View& view);

@@ -165,7 +165,9 @@ TEST_F(OutpainterOfRandomWeights, only_the_likeliest_few_are_refined_when_asked)
   OutpaintOptions options;
   options.samples = 10;
   options.refine_best = 3;
+  options.screen = OutpaintOptions::Screen::likelihood;
   const Outpainted result = outpainter({recorder()}).run(projection_, background_, options);
+  EXPECT_EQ(seen_.size(), 3u);
   EXPECT_EQ(result.report.drawn, 10);
   EXPECT_EQ(result.report.refined, 3);
   std::vector<std::int32_t> codes(kHeight / 8 * kWidth / 8);
@@ -181,6 +183,18 @@ TEST_F(OutpainterOfRandomWeights, only_the_likeliest_few_are_refined_when_asked)
       EXPECT_LE(completions[static_cast<std::size_t>(i)].log_likelihood, least);
     }
   }
+}
+
+TEST_F(OutpainterOfRandomWeights, only_the_best_few_before_refinement_are_refined_when_asked) {
+  OutpaintOptions options;
+  options.samples = 5;
+  options.refine_best = 2;
+  // What the scorer says of the five unrefined pictures, then of the two that it chose: 1 and 4.
+  const Outpainted result =
+      outpainter({recorder({0, 4, 1, 2, 3, 8, 9})}).run(projection_, background_, options);
+  EXPECT_EQ(seen_.size(), 7u);
+  EXPECT_EQ(result.refined, (std::vector<int>{1, 4}));
+  EXPECT_EQ(result.best, 4);
 }
 
 TEST_F(OutpainterOfRandomWeights, the_same_bytes_for_any_number_of_threads) {
