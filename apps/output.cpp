@@ -165,6 +165,15 @@ void check_output_file(const fs::path& path, const std::vector<std::string>& ext
   check_parent(path, path);
 }
 
+void check_not_input(const fs::path& output, const std::vector<fs::path>& inputs) {
+  for (const fs::path& input : inputs) {
+    std::error_code ignored;
+    if (fs::equivalent(output, input, ignored)) {
+      throw Error(output.string(), "is " + input.string() + ", which is read", "another file");
+    }
+  }
+}
+
 std::string extension_of(const fs::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));

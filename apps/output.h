@@ -43,6 +43,11 @@ class OutputFolder {
 void check_output_file(const std::filesystem::path& path,
                        const std::vector<std::string>& extensions);
 
+/// @brief Throws ps::Error when an output would replace one of the files it is made from, under
+/// whatever name.
+void check_not_input(const std::filesystem::path& output,
+                     const std::vector<std::filesystem::path>& inputs);
+
 /// @return the extension in lower case, with its dot
 std::string extension_of(const std::filesystem::path& path);
 

@@ -2,8 +2,10 @@
 #include "apps/probe.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "libps/core/error.h"
+#include "libps/nn/weights.h"
 
 namespace ps::apps {
 namespace {
@@ -13,7 +15,7 @@ constexpr std::size_t kLongestSide = std::size_t{1} << 24;
 std::string text_of(const std::vector<std::size_t>& shape) {
   std::string text;
   for (const std::size_t side : shape) {
-    text += (text.empty() ? "" : ",") + (side == 0 ? "any" : std::to_string(side));
+    text += (text.empty() ? "" : ", ") + (side == 0 ? "any" : std::to_string(side));
   }
   return "[" + text + "]";
 }
@@ -51,9 +53,19 @@ const FileTensor& ProbeInput::take(const std::string& name,
                                    const std::vector<std::size_t>& shape) const {
   const FileTensor& tensor = take(name);
   if (!std::equal(tensor.shape.begin(), tensor.shape.end(), shape.begin(), shape.end(), fits)) {
+    throw Error(
+        files_.in,
+        "tensor '" + files_.prefix + name + "' has the shape " + nn::to_string(tensor.shape),
+        text_of(shape));
+  }
+  const std::vector<float> values = tensor.as_floats();
+  const auto finite = [](float value) { return std::isfinite(value); };
+  const auto bad = std::find_if_not(values.begin(), values.end(), finite);
+  if (bad != values.end()) {
     throw Error(files_.in,
-                "tensor '" + files_.prefix + name + "' has the shape " + text_of(tensor.shape),
-                text_of(shape));
+                "tensor '" + files_.prefix + name + "' holds " + std::to_string(*bad) +
+                    " at value " + std::to_string(bad - values.begin()),
+                "finite numbers");
   }
   return tensor;
 }

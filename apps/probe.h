@@ -34,7 +34,8 @@ class ProbeInput {
   /// Throws ps::Error that says which tensors there are when there is no such one.
   const FileTensor& take(const std::string& name) const;
 
-  /// @brief The same, of a given shape; a side of 0 may be anything from 1 to 2^24.
+  /// @brief The same, of a given shape; a side of 0 may be anything from 1 to 2^24. Throws also
+  /// when a value is not finite.
   const FileTensor& take(const std::string& name, const std::vector<std::size_t>& shape) const;
 
  private:

@@ -221,6 +221,8 @@ constexpr Module kModules[] = {
 
 void run(const Module& module, const NetworkArguments& a, const Context& context) {
   check_output_file(a.files.out, {".safetensors"});
+  check_not_input(a.files.out, {a.files.in, a.weights});
+  if (a.min_z >= a.max_z) throw Error("--min-z", "is not below --max-z", "a lesser depth");
   note_interrupts();
   Job job{a, ProbeInput(a.files), read_weights(a.weights)};
   module.run(job);

@@ -51,6 +51,7 @@ void finish(const ProbeFiles& files, const TensorMap& tensors, const Json& repor
 
 void run_order(const ProbeFiles& files, const Context& context) {
   check_output_file(files.out, {".safetensors"});
+  check_not_input(files.out, {files.in});
   note_interrupts();
   const outpaint::Order order = order_of(ProbeInput(files));
   const auto missing = std::count(order.missing.begin(), order.missing.end(), 1);
@@ -59,6 +60,7 @@ void run_order(const ProbeFiles& files, const Context& context) {
 
 void run_sample(const SampleArguments& a, const Context& context) {
   check_output_file(a.files.out, {".safetensors"});
+  check_not_input(a.files.out, {a.files.in, a.weights});
   note_interrupts();
   const ProbeInput in(a.files);
   const outpaint::Order order = order_of(in);

@@ -81,6 +81,7 @@ TensorMap tensors_of(const Splat& splat) {
 
 void run_splat(const SplatArguments& a, const Context& context) {
   check_output_file(a.files.out, {".safetensors"});
+  check_not_input(a.files.out, {a.files.in});
   note_interrupts();
   const PlanePoints points = read_points(a, context);
   SplatOptions options = a.splat;

@@ -157,11 +157,14 @@ void write_all(OutputFolder& folder, const Cloud& cloud, const View& view,
 
 void check_networks(const SceneArguments& a) {
   if (a.depth.empty()) {
-    throw Error("scene", "this build has no networks yet, so it cannot estimate depth",
-                "--depth FILE, the photo's depth image");
+    throw Error(
+        "scene",
+        "the networks are here but have no trained weights yet, so it cannot estimate depth",
+        "--depth FILE, the photo's depth image");
   }
   if (!a.no_outpaint) {
-    throw Error("scene", "this build has no networks yet, so it cannot outpaint",
+    throw Error("scene",
+                "the networks are here but have no trained weights yet, so it cannot outpaint",
                 "--no-outpaint, for a scene of what the photo shows");
   }
 }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "apps/interrupt.h"
 #include "apps/output.h"
 #include "apps/program.h"
 #include "apps/report.h"
@@ -187,9 +188,12 @@ FloatType type_of(const std::string& name) {
 
 void run_convert(const WeightsArguments& a, const Context& context) {
   check_output_file(a.out, {".safetensors"});
+  check_not_input(a.out, {a.in});
+  note_interrupts();
   TensorMap tensors = with_prefix(read_weight_tensors(a.in), a);
   const std::vector<Summary> summaries = summarise(tensors);
   warn_of_bad_values(summaries, context);
+  throw_if_interrupted();
   write_safetensors(a.out, stored_as(std::move(tensors), type_of(a.type), a.out));
   const Count total = total_of(count_modules(summaries));
   print_report(context, {{"input", a.in},

@@ -156,9 +156,24 @@ nn::Weights parse_weights(std::string_view bytes, const std::string& name) {
   });
 }
 
+/// What f64 can hold and f32 cannot would become infinity.
+static void check_fits_float(const FileTensor& tensor, const std::string& where,
+                             const std::string& name) {
+  if (tensor.dtype != "F64") return;
+  for (std::size_t i = 0; i < tensor.elements(); ++i) {
+    double value;
+    std::memcpy(&value, tensor.bytes.data() + i * sizeof value, sizeof value);
+    if (std::isfinite(value) && !std::isfinite(static_cast<float>(value))) {
+      throw Error(where, "tensor '" + name + "' holds " + std::to_string(value),
+                  "values that f32 can hold");
+    }
+  }
+}
+
 TensorMap stored_as(TensorMap tensors, FloatType type, const std::string& where) {
   for (auto& [name, tensor] : tensors) {
     if (!nn::is_float_type(tensor.dtype)) continue;
+    check_fits_float(tensor, where, name);
     tensor = stored(tensor.as_floats(), tensor.shape, type, where, name);
   }
   return tensors;

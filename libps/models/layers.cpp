@@ -40,6 +40,10 @@ std::vector<float> Layers::vector(const std::string& name, int count) const {
   return weights_.vector(prefix_ + name, static_cast<std::size_t>(count));
 }
 
+std::vector<float> Layers::variance(const std::string& name, int count) const {
+  return weights_.variance(prefix_ + name, static_cast<std::size_t>(count));
+}
+
 nn::Convolution Layers::convolution(const std::string& name, const ConvolutionSpec& spec,
                                     const std::string& norm,
                                     const std::vector<float>& added) const {

@@ -41,6 +41,7 @@ class Layers {
   /// @brief A tensor as it stands in the file; axes of 0 may be anything.
   nn::WeightTensor tensor(const std::string& name, const std::vector<int>& shape) const;
   std::vector<float> vector(const std::string& name, int count) const;
+  std::vector<float> variance(const std::string& name, int count) const;  ///< none is negative
 
  private:
   const nn::Weights& weights_;

@@ -17,11 +17,13 @@ constexpr char kName[] = "Refiner";
 constexpr double kEps = 1e-5;
 constexpr int kImageChannels = 3;
 
-NoiseNorm read_norm(const Layers& layers, const std::string& name, int channels) {
-  return {layers.weight(name + ".gain", {channels, 0}),
-          layers.weight(name + ".bias", {channels, 0}),
+/// @param noise  width of the noise: 0 before the first norm is read, which sets it for all others
+NoiseNorm read_norm(const Layers& layers, const std::string& name, int channels, int& noise) {
+  const nn::WeightTensor gain = layers.weight(name + ".gain", {channels, noise});
+  noise = static_cast<int>(gain.shape[1]);
+  return {gain, layers.weight(name + ".bias", {channels, noise}),
           layers.vector(name + ".bn.stored_mean", channels),
-          layers.vector(name + ".bn.stored_var", channels)};
+          layers.variance(name + ".bn.stored_var", channels)};
 }
 
 float dot(const float* a, const float* b, std::size_t count) {
@@ -53,7 +55,7 @@ std::vector<Refiner::Block> Refiner::read_blocks(const Layers& layers) {
                                                  Resample::none, Resample::up,   Resample::up,
                                                  Resample::none, Resample::none};
   std::vector<Block> blocks;
-  int in = kImageChannels + 1;
+  int in = kImageChannels + 1, noise = 0;
   for (std::size_t i = 0; i < kResample.size(); ++i) {
     const std::string name = "eblocks." + std::to_string(i) + ".";
     ConvolutionSpec spec;
@@ -70,9 +72,10 @@ std::vector<Refiner::Block> Refiner::read_blocks(const Layers& layers) {
     }
     spec.in = spec.out = out;
     nn::Convolution convolution2 = layers.convolution(name + "ch_a.5", spec, "", straight_bias);
-    blocks.push_back({read_norm(layers, name + "ch_a.0", in), std::move(convolution1),
-                      read_norm(layers, name + "ch_a.3", out), std::move(convolution2),
-                      std::move(straight), kResample[i]});
+    NoiseNorm norm1 = read_norm(layers, name + "ch_a.0", in, noise);
+    NoiseNorm norm2 = read_norm(layers, name + "ch_a.3", out, noise);
+    blocks.push_back({std::move(norm1), std::move(convolution1), std::move(norm2),
+                      std::move(convolution2), std::move(straight), kResample[i]});
     in = out;
   }
   return blocks;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kFewChannels = 8;               ///< up to so many, patches are copied into rows
 constexpr int kWinogradChannels = 16;         ///< fewer do not pay for the transforms
-constexpr int kWinogradPixels = 256;  ///< of an output image; nor do fewer of these
+constexpr std::size_t kWinogradPixels = 256;  ///< of an output image; nor do fewer of these
 
 /// The patches of output pixels, in their order.
 class Patches {
@@ -159,13 +159,14 @@ std::size_t Convolution::bytes() const {
 
 void Convolution::operator()(const TensorView& in, const TensorView& out, Workspace& workspace,
                              const Epilogue& given, const Prologue& prologue) const {
-  check_same({in.shape.images, in.shape.height, in.shape.width, in_}, in.shape, "convolution");
+  check_same(in.shape, {in.shape.images, in.shape.height, in.shape.width, in_}, "convolution");
   check_same(out.shape, output(in.shape), "convolution");
   check_epilogue(given, out.shape, "convolution");
   Epilogue epilogue = given;
   epilogue.bias = bias_.empty() ? nullptr : bias_.data();
   const bool forced = options_.method == Method::winograd;
-  if (winograd_ && (forced || out.shape.height * out.shape.width >= kWinogradPixels)) {
+  if (winograd_ &&
+      (forced || std::size_t{1} * out.shape.height * out.shape.width >= kWinogradPixels)) {
     winograd_convolution(*winograd_, in, options_.padding, out, epilogue, prologue);
   } else if (prologue.scale) {
     const Workspace::Scope scope(workspace);

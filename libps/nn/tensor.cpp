@@ -20,13 +20,17 @@ std::size_t values(const Shape& shape) {
   if (shape.images < 0 || shape.height < 0 || shape.width < 0 || shape.channels < 0) {
     throw Error("tensor", "a negative size", "0 or more");
   }
+  constexpr double kMost = 1e15;  // far beyond any memory, and still exact in a size_t
+  if (1.0 * shape.images * shape.height * shape.width * shape.channels > kMost) {
+    throw Error("tensor", "more values than any machine holds", "a smaller size");
+  }
   return shape.pixels() * static_cast<std::size_t>(shape.channels);
 }
 
 }  // namespace
 
 TensorView TensorView::channels(int first, int count) const {
-  if (first < 0 || count < 0 || first + count > shape.channels) {
+  if (first < 0 || count < 0 || first > shape.channels - count) {
     throw Error("tensor", "channels outside it",
                 "a range within its " + std::to_string(shape.channels) + " channels");
   }
@@ -37,7 +41,7 @@ TensorView TensorView::channels(int first, int count) const {
 }
 
 TensorView TensorView::images(int first, int count) const {
-  if (first < 0 || count < 0 || first + count > shape.images) {
+  if (first < 0 || count < 0 || first > shape.images - count) {
     throw Error("tensor", "images outside it",
                 "a range within its " + std::to_string(shape.images) + " images");
   }

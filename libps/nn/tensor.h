@@ -53,8 +53,8 @@ using AlignedFloats = std::unique_ptr<float[], FreeAligned>;
 /// @return uninitialised floats, aligned to 64 bytes
 AlignedFloats aligned_floats(std::size_t count);
 
-/// @brief Activations with memory of their own, zero at first, aligned to 64 bytes, dense. One that is
-/// made without a shape holds nothing.
+/// @brief Activations with memory of their own, zero at first, aligned to 64 bytes, dense. One that
+/// is made without a shape holds nothing.
 class Tensor {
  public:
   Tensor() = default;

@@ -163,18 +163,23 @@ std::vector<float> Weights::vector(const std::string& name, std::size_t count,
   return get(name, {count}).values;
 }
 
+std::vector<float> Weights::variance(const std::string& name, std::size_t count) const {
+  const std::vector<float> values = vector(name, count);
+  for (const float value : values) {
+    if (value < 0) {
+      throw Error(name_, called(name) + " holds " + std::to_string(value), "no negative variance");
+    }
+  }
+  return values;
+}
+
 ScaleShift batch_norm(const Weights& weights, const std::string& prefix, std::size_t channels) {
   const std::vector<float> weight = weights.vector(prefix + ".weight", channels);
   const std::vector<float> bias = weights.vector(prefix + ".bias", weight.size());
   const std::vector<float> mean = weights.vector(prefix + ".running_mean", weight.size());
-  const std::vector<float> variance = weights.vector(prefix + ".running_var", weight.size());
+  const std::vector<float> variance = weights.variance(prefix + ".running_var", weight.size());
   ScaleShift norm;
   for (std::size_t c = 0; c < weight.size(); ++c) {
-    if (variance[c] < 0) {
-      throw Error(weights.name(),
-                  called(prefix + ".running_var") + " holds " + std::to_string(variance[c]),
-                  "no negative variance");
-    }
     const double scale = weight[c] / std::sqrt(variance[c] + kBatchNormEpsilon);
     norm.scale.push_back(static_cast<float>(scale));
     norm.shift.push_back(static_cast<float>(bias[c] - mean[c] * scale));

@@ -53,6 +53,9 @@ class Weights {
   std::vector<float> vector(const std::string& name, std::size_t count,
                             bool optional = false) const;
 
+  /// @brief The same; throws also when a value is negative.
+  std::vector<float> variance(const std::string& name, std::size_t count) const;
+
   const std::map<std::string, WeightTensor>& tensors() const { return tensors_; }
   const std::string& name() const { return name_; }
 

@@ -217,10 +217,10 @@ bool Outpainter::draw(View& view, Sampler& sampler) {
   options.view = o.view;
   int& drawn = view.result.report.drawn;
   for (int leader = -1; drawn < most;) {
-    if (o.progress) {
-      options.progress = [&](double done) { return o.progress((drawn + done * round) / most); };
-    }
     const int count = std::min(round, most - drawn);
+    if (o.progress) {
+      options.progress = [&](double done) { return o.progress((drawn + done * count) / most); };
+    }
     {
       const Clock clock(view.result.report.sample_seconds);
       std::vector<Completion> more = sampler.sample(drawn, count, options);

@@ -227,7 +227,28 @@ TEST(ProbeOutpaint, say_what_they_were_not_given) {
   EXPECT_TRUE(
       has(refused("sample", kWeights,
                   {{"bg256", golden_background_tensor()}, {"codes", goldens().at("vq.clear")}}),
-          "[1,32,32]"));
+          "[1, 32, 32]"));
+}
+
+TEST(ProbeNetworks, refuse_what_is_no_number_and_depths_in_the_wrong_order) {
+  nn::Tensor picture = golden_picture();
+  picture.data()[5] = NAN;
+  EXPECT_TRUE(has(refused("depth", kWeights, {{"input", planes_of(picture)}}), "'input' holds"));
+  picture.data()[5] = 0;
+  EXPECT_TRUE(has(refused("depth --min-z 5 --max-z 2", kWeights, {{"input", planes_of(picture)}}),
+                  "--min-z"));
+}
+
+TEST(ProbeNetworks, never_write_over_what_they_read) {
+  const Folder folder;
+  const std::string file = folder / "in.safetensors", link = folder / "link.safetensors";
+  write_safetensors(file, {{"input", planes_of(golden_picture())}});
+  std::filesystem::create_symlink(file, link);
+  const std::string before = ps::bytes_of(std::filesystem::path(file));
+  const std::string command = "'" PS_PROGRAM "' -q probe depth --weights '" + kWeights +
+                              "' --in '" + file + "' --out '" + link + "' 2>/dev/null";
+  EXPECT_NE(std::system(command.c_str()), 0);
+  EXPECT_EQ(ps::bytes_of(std::filesystem::path(file)), before);
 }
 
 TEST(ProbeNetworks, say_what_they_were_not_given) {
@@ -236,7 +257,7 @@ TEST(ProbeNetworks, say_what_they_were_not_given) {
                   "in.safetensors: has no tensor 'input'; it has image"));
   EXPECT_TRUE(has(refused("depth", kWeights, {{"input", corner}}), "multiples of 256"));
   EXPECT_TRUE(has(refused("vq-encode", kWeights, {{"input", goldens().at("vq.codes")}}),
-                  "tensor 'input' has the shape [1,32,32]; expected [any,3,any,any]"));
+                  "tensor 'input' has the shape [1, 32, 32]; expected [any, 3, any, any]"));
   EXPECT_TRUE(has(refused("vq-decode", kWeights,
                           {{"codes", FileTensor::of(std::vector<std::int32_t>{600}, {1, 1, 1})}}),
                   "600"));
@@ -246,7 +267,7 @@ TEST(ProbeNetworks, say_what_they_were_not_given) {
   TensorMap in = goldens_of("pixelcnn.");
   in["pixelcnn.mask_dilated"] = goldens().at("vq.codes");
   EXPECT_TRUE(has(refused("pixelcnn --prefix pixelcnn.", kWeights, in),
-                  "'pixelcnn.mask_dilated' has the shape [1,32,32]; expected [9,1024]"));
+                  "'pixelcnn.mask_dilated' has the shape [1, 32, 32]; expected [9, 1024]"));
   in = {{"combined", corner},
         {"bg_dilated", goldens().at("refine.bg_dilated")},
         {"noise", goldens().at("vq.decoded")}};

@@ -132,5 +132,30 @@ TEST(Refiner, refuses_what_does_not_fit) {
                   "'projector.eblocks.4.ch_a.3.bn.stored_var' holds NaN"));
 }
 
+/// Weights with one tensor changed.
+nn::Weights changed(const std::string& name, const nn::WeightTensor& tensor) {
+  auto tensors = random_refiner(8).tensors();
+  EXPECT_EQ(tensors.count(name), 1u) << name;
+  tensors[name] = tensor;
+  return nn::Weights("w", tensors);
+}
+
+TEST(Refiner, names_noise_layers_of_another_width_and_negative_variances) {
+  const auto all = random_refiner(8).tensors();
+  for (const auto& [name, tensor] : all) {
+    const bool gain = name.find(".gain.weight") != std::string::npos;
+    const bool first = name.find("eblocks.0.ch_a.0.gain") != std::string::npos;
+    if (first || !(gain || name.find(".bias.weight") != std::string::npos)) continue;
+    if (tensor.shape.size() != 2) continue;
+    nn::WeightTensor narrow = {{tensor.shape[0], tensor.shape[1] / 2}, {}};
+    narrow.values.resize(narrow.elements());
+    EXPECT_TRUE(has(error_of([&] { Refiner(changed(name, narrow)); }), name)) << name;
+  }
+  const std::string name = "projector.eblocks.2.ch_a.3.bn.stored_var";
+  nn::WeightTensor variance = all.at(name);
+  variance.values[1] = -1;
+  EXPECT_TRUE(has(error_of([&] { Refiner(changed(name, variance)); }), name));
+}
+
 }  // namespace
 }  // namespace ps::models

@@ -83,7 +83,8 @@ double worst_difference(const nn::Tensor& a, const nn::Tensor& b) {
   EXPECT_EQ(a.shape(), b.shape());
   double worst = 0;
   for (std::size_t i = 0; i < a.shape().pixels() * 3; ++i) {
-    worst = std::max<double>(worst, std::abs(a.data()[i] - b.data()[i]));
+    const double difference = std::abs(a.data()[i] - b.data()[i]);
+    if (!(difference <= worst)) worst = difference;  // also when it is NaN
   }
   return worst;
 }
