@@ -49,9 +49,11 @@ app_test(weights_convert_puts_a_prefix_before_names_without_a_network [=[
   prints '^classifier.fc.bias '
   prints '^vqvae.a.weight '
   fails 2 'prefix' weights convert $S/weights.safetensors -o b.safetensors --prefix 'a b']=])
-app_test(weights_convert_may_replace_what_it_reads [=[
+app_test(weights_convert_never_replaces_what_it_reads [=[
   cp $S/weights.safetensors a.safetensors
-  works weights convert a.safetensors -o a.safetensors
+  ln -s a.safetensors link.safetensors
+  fails 1 'a.safetensors: is .*, which is read' weights convert a.safetensors -o a.safetensors
+  fails 1 'link.safetensors: is .*, which is read' weights convert a.safetensors -o link.safetensors
   works weights info a.safetensors
   prints '^all +3 +8$']=])
 app_test(weights_of_a_hostile_file_run_nothing [=[
