@@ -161,9 +161,7 @@ void Convolution::operator()(const TensorView& in, const TensorView& out, Worksp
                              const Epilogue& given, const Prologue& prologue) const {
   check_same(in.shape, {in.shape.images, in.shape.height, in.shape.width, in_}, "convolution");
   check_same(out.shape, output(in.shape), "convolution");
-  check_epilogue(given, out.shape, "convolution");
-  Epilogue epilogue = given;
-  epilogue.bias = bias_.empty() ? nullptr : bias_.data();
+  const Epilogue epilogue = with_bias(given, bias_, out.shape, "convolution");
   const bool forced = options_.method == Method::winograd;
   if (winograd_ &&
       (forced || std::size_t{1} * out.shape.height * out.shape.width >= kWinogradPixels)) {

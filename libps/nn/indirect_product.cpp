@@ -123,12 +123,16 @@ void check_same(const Shape& got, const Shape& wanted, const char* what) {
   if (got != wanted) throw Error(what, "a tensor of " + text(got), text(wanted));
 }
 
-void check_epilogue(const Epilogue& epilogue, const Shape& out, const char* what) {
-  if (epilogue.bias) throw Error(what, "an epilogue with a bias", "the operator's own bias alone");
-  if (!epilogue.scale != !epilogue.shift) {
+Epilogue with_bias(const Epilogue& given, const std::vector<float>& bias, const Shape& out,
+                   const char* what) {
+  if (given.bias) throw Error(what, "an epilogue with a bias", "the operator's own bias alone");
+  if (!given.scale != !given.shift) {
     throw Error(what, "an epilogue with a scale or a shift alone", "both or neither");
   }
-  if (epilogue.residual) check_same(epilogue.residual->shape, out, what);
+  if (given.residual) check_same(given.residual->shape, out, what);
+  Epilogue epilogue = given;
+  epilogue.bias = bias.empty() ? nullptr : bias.data();
+  return epilogue;
 }
 
 void check_bias(const std::vector<float>& bias, std::size_t channels, const char* what) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Internal to the nn room: a product of rows that lie scattered in memory, on all threads.
+// Internal to the library (the sampler multiplies so, too): a product of rows that lie scattered in
+// memory, on all threads.
 #pragma once
 
 #include <cstddef>
@@ -39,9 +40,10 @@ void indirect_product(const PackedMatrix& matrix, const IndirectRows& rows, cons
 /// @brief Throws ps::Error unless the two shapes are the same; `what` names the operator.
 void check_same(const Shape& got, const Shape& wanted, const char* what);
 
-/// @brief Throws ps::Error unless the epilogue can be used by an operator with a bias of its own
-/// and this output.
-void check_epilogue(const Epilogue& epilogue, const Shape& out, const char* what);
+/// @return the epilogue with an operator's own bias; throws ps::Error when it has one already, a
+/// scale without a shift or the reverse, or a residual of another shape than the output
+Epilogue with_bias(const Epilogue& given, const std::vector<float>& bias, const Shape& out,
+                   const char* what);
 
 /// @brief A bias is there, with one value for each channel, or it is empty; else throws ps::Error.
 void check_bias(const std::vector<float>& bias, std::size_t channels, const char* what);

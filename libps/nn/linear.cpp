@@ -25,9 +25,7 @@ void Linear::operator()(const TensorView& in, const TensorView& out, const Epilo
   const Shape& s = in.shape;
   check_same(s, {s.images, s.height, s.width, matrix_.depth()}, "linear layer");
   check_same(out.shape, {s.images, s.height, s.width, matrix_.columns()}, "linear layer");
-  check_epilogue(given, out.shape, "linear layer");
-  Epilogue epilogue = given;
-  epilogue.bias = bias_.empty() ? nullptr : bias_.data();
+  const Epilogue epilogue = with_bias(given, bias_, out.shape, "linear layer");
   IndirectRows rows;
   rows.count = s.pixels();
   rows.sources = [&](std::size_t begin, std::size_t end, const float** pointers) {

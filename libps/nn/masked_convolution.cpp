@@ -32,9 +32,7 @@ void MaskedConvolution::operator()(const TensorView& in, const std::uint8_t* mas
   const Shape& s = in.shape;
   check_same(s, {s.images, s.height, s.width, matrix_.depth()}, "masked convolution");
   check_same(out.shape, {s.images, s.height, s.width, matrix_.columns()}, "masked convolution");
-  check_epilogue(given, out.shape, "masked convolution");
-  Epilogue epilogue = given;
-  epilogue.bias = bias_.empty() ? nullptr : bias_.data();
+  const Epilogue epilogue = with_bias(given, bias_, out.shape, "masked convolution");
   const auto width = static_cast<std::size_t>(s.width), height = static_cast<std::size_t>(s.height);
   const std::size_t cells = width * height;
   IndirectRows rows;

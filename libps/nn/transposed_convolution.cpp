@@ -40,9 +40,7 @@ void TransposedConvolution::operator()(const TensorView& in, const TensorView& o
   const Shape& s = in.shape;
   check_same(s, {s.images, s.height, s.width, in_channels()}, "transposed convolution");
   check_same(out.shape, output(s), "transposed convolution");
-  check_epilogue(given, out.shape, "transposed convolution");
-  Epilogue epilogue = given;
-  epilogue.bias = bias_.empty() ? nullptr : bias_.data();
+  const Epilogue epilogue = with_bias(given, bias_, out.shape, "transposed convolution");
   const auto width = static_cast<std::size_t>(s.width);
   for (int phase = 0; phase < 4; ++phase) {
     const PackedMatrix& matrix = matrices_[static_cast<std::size_t>(phase)];
