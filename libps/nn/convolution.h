@@ -29,7 +29,8 @@ struct ConvolutionOptions {
 };
 
 /// @brief What may be done to the input of a convolution as it is read: relu(x * scale + shift),
-/// for each channel; zeros of the padding stay zeros. Null = nothing.
+/// for each channel; zeros of the padding stay zeros. Both, with a value for each input channel, or
+/// neither.
 struct Prologue {
   const float* scale = nullptr;
   const float* shift = nullptr;

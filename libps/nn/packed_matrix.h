@@ -51,6 +51,9 @@ class PackedMatrix {
   std::size_t bytes() const;
   const float* zeros() const { return zeros_.get(); }  ///< rows() of them
 
+  static constexpr int kRows = 6;
+  static constexpr int kOnlyTap = 0;  ///< tap_index of a row of one tap
+
   /// The rows of one tile: `count` of them, and of each the taps that are not all zeros.
   struct Tile {
     const float* const* rows;  ///< [taps][kRows] pointers; of each tap, the first `count` count
@@ -65,8 +68,6 @@ class PackedMatrix {
   /// @param cut  into how many taps a row is cut here: taps(), or, where the floats of several taps
   /// lie
   ///             behind each other in memory, a divisor of it
-  static constexpr int kRows = 6;
-  static constexpr int kOnlyTap = 0;  ///< tap_index of a row of one tap
   void multiply(const Tile& tile, int cut, const Epilogue& epilogue, int first_panel,
                 int last_panel) const;
 

@@ -16,7 +16,8 @@ namespace {
 constexpr std::size_t kMemory = std::size_t{700} << 20;  ///< bytes for activations that differ
 constexpr std::size_t kMostAtOnce = 60;                  ///< completions; more rows gain nothing
 
-void check(const SampleOptions& options, int count, const Order& order, int codes) {
+void check(const SampleOptions& options, int first, int count, const Order& order, int codes) {
+  if (first < 0) throw Error("first completion", std::to_string(first), "0 or more");
   if (count < 0) throw Error("completions", std::to_string(count), "0 or more");
   if (!(options.temperature >= 0 && options.temperature <= 2)) {
     throw Error("temperature", std::to_string(options.temperature), "0 to 2");
@@ -79,7 +80,7 @@ class Sampler::Impl {
   }
 
   std::vector<Completion> sample(int first, int count, const SampleOptions& options) {
-    check(options, count, order_, network_.codes());
+    check(options, first, count, order_, network_.codes());
     std::vector<Completion> all;
     if (missing_ > 0 && count > 0 && shared_logits_.empty()) run_shared();
     const std::size_t at_once = completions_at_once();
@@ -158,7 +159,7 @@ class Sampler::Impl {
     auto code = static_cast<std::int32_t>(likeliest);
     if (options.forced) {
       code = options.forced[cell];
-    } else if (options.temperature > 0) {
+    } else if (static_cast<float>(options.temperature) > 0) {
       softmax_of(logits, codes, options.temperature, probabilities);
       code = draw(probabilities,
                   random_unit(options.seed, {options.view, static_cast<std::uint32_t>(completion),

@@ -15,7 +15,8 @@ struct SampleOptions {
   double temperature = 0.7;  ///< 0 = the likeliest code (the first of them), at most 2
   std::uint64_t seed = 0;
   std::uint32_t view = 0;  ///< views with one seed draw different numbers
-  /// By cell: taken in place of what would be drawn (teacher forcing); null = draw.
+  /// By cell, as many as the order has: taken in place of what would be drawn (teacher forcing);
+  /// null = draw.
   const std::int32_t* forced = nullptr;
   /// Told what share is done; sampling stops when it returns false.
   std::function<bool(double done)> progress;
@@ -35,7 +36,8 @@ struct Completion {
 /// that see nothing missing are computed once for all completions. The others advance in levels of
 /// cells that do not see each other, all completions at once, so that each layer is one matrix
 /// product. A completion is a function of (network, order, codes, seed, view, its number): the same
-/// bits however many are drawn, in whatever rounds, on however many threads.
+/// bits however many are drawn, in whatever rounds, on however many threads. Not for two threads at
+/// once.
 class Sampler {
  public:
   /// @param network  must outlive the sampler
@@ -48,8 +50,8 @@ class Sampler {
 
   /// @brief Draws completions [first, first + count).
   /// @return them, or nothing when options.progress stopped it
-  /// Throws ps::Error when count is negative, the temperature not in [0, 2], or a forced code
-  /// unknown.
+  /// Throws ps::Error when first or count is negative, the temperature not in [0, 2], or a forced
+  /// code unknown.
   std::vector<Completion> sample(int first, int count, const SampleOptions& options = {});
 
   std::size_t missing() const;  ///< cells to sample in each completion

@@ -302,6 +302,7 @@ TEST(Sampler, errors_say_what_is_wrong) {
   Sampler sampler(network, order, {3, -1});
   SampleOptions options;
   EXPECT_TRUE(has(error_of([&] { sampler.sample(0, -1, options); }), "completions"));
+  EXPECT_TRUE(has(error_of([&] { sampler.sample(-1, 1, options); }), "first completion"));
   for (const double temperature : {-0.1, 2.1, std::nan("")}) {
     options.temperature = temperature;
     EXPECT_TRUE(has(error_of([&] { sampler.sample(0, 1, options); }), "temperature"));
