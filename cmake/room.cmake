@@ -42,3 +42,18 @@ function(pixelsynth_room name)
   endif()
   set_property(GLOBAL APPEND PROPERTY PIXELSYNTH_ROOMS ${target})
 endfunction()
+
+# pixelsynth_kernels(ROOM ISA SOURCES ... FLAGS ...): inner loops of a room for one instruction set, which they
+# know as PS_ISA. One of these is picked at run time; the sources include C headers alone, so that no
+# inline function can leak from one instruction set to another.
+function(pixelsynth_kernels room isa)
+  cmake_parse_arguments(KERNELS "" "" "SOURCES;FLAGS" ${ARGN})
+  set(target ${room}_kernels_${isa})
+  add_library(${target} OBJECT ${KERNELS_SOURCES})
+  target_compile_features(${target} PRIVATE cxx_std_17)
+  target_compile_definitions(${target} PRIVATE PS_ISA=${isa})
+  target_compile_options(${target} PRIVATE -O3 -ffp-contract=off -fno-math-errno -Wno-psabi ${KERNELS_FLAGS})
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${target} PRIVATE pixelsynth_flags)
+  target_sources(pixelsynth_${room} PRIVATE $<TARGET_OBJECTS:${target}>)
+endfunction()
