@@ -9,20 +9,6 @@ using namespace maker;
 using namespace std::string_literals;
 using Floats = std::vector<float>;
 
-TensorMap parse(const std::string& bytes) { return parse_torch_checkpoint(bytes, "w.pth"); }
-
-TensorMap parse(const std::string& value, const std::vector<Storage>& storages) {
-  return parse(zip_checkpoint(value, storages));
-}
-
-std::string message(const std::string& value, const std::vector<Storage>& storages) {
-  return error_of([&] { parse(value, storages); });
-}
-
-std::string message(const std::string& bytes) {
-  return error_of([&] { parse(bytes); });
-}
-
 TEST(BadCheckpoint, every_truncation_is_an_error) {
   for (const std::string& whole : {zip_checkpoint(sample(), sample_storages()),
                                    legacy_checkpoint(sample(), sample_storages())}) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/torch_checkpoint.h"
 #include "tests/io/support.h"
 
 /// Pickles and checkpoints, made byte by byte: each function gives the instructions that leave one
@@ -153,6 +154,21 @@ inline std::string sample() {
 
 inline std::vector<Storage> sample_storages() {
   return {kSix, {"1", "LongStorage", 1, raw<std::int64_t>(7)}};
+}
+
+/// Reads what was made, as the file w.pth; or the one line of what is wrong with it.
+inline TensorMap parse(const std::string& bytes) { return parse_torch_checkpoint(bytes, "w.pth"); }
+
+inline TensorMap parse(const std::string& value, const std::vector<Storage>& storages) {
+  return parse(zip_checkpoint(value, storages));
+}
+
+inline std::string message(const std::string& value, const std::vector<Storage>& storages) {
+  return error_of([&] { parse(value, storages); });
+}
+
+inline std::string message(const std::string& bytes) {
+  return error_of([&] { parse(bytes); });
 }
 
 }  // namespace ps::maker

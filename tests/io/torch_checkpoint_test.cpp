@@ -14,20 +14,6 @@ using namespace maker;
 using namespace std::string_literals;
 using Floats = std::vector<float>;
 
-TensorMap parse(const std::string& bytes) { return parse_torch_checkpoint(bytes, "w.pth"); }
-
-TensorMap parse(const std::string& value, const std::vector<Storage>& storages) {
-  return parse(zip_checkpoint(value, storages));
-}
-
-std::string message(const std::string& value, const std::vector<Storage>& storages) {
-  return error_of([&] { parse(value, storages); });
-}
-
-std::string message(const std::string& bytes) {
-  return error_of([&] { parse(bytes); });
-}
-
 void expect_sample(const TensorMap& tensors) {
   ASSERT_EQ(tensors.size(), 2u);
   const FileTensor& weight = tensors.at("a.weight");
