@@ -55,6 +55,12 @@ std::size_t count_tokens(std::string_view line) {
   return count;
 }
 
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
 double take_number(std::string_view& line, const LineReader& lines, const char* what) {
   const std::string_view token = next_token(line);
   const std::optional<double> value = to_number<double>(token);

@@ -37,6 +37,9 @@ std::string_view next_token(std::string_view& line);
 
 std::size_t count_tokens(std::string_view line);
 
+/// @return `text` without the blanks around it
+std::string_view trimmed(std::string_view text);
+
 /// @return the number that `token` is, whole; empty when it is none or out of range
 template <class T>
 std::optional<T> to_number(std::string_view token) {

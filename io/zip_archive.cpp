@@ -65,7 +65,7 @@ std::string ZipArchive::read(const std::string& entry, std::size_t most) const {
     throw Error(where, "is packed in a way that is not read", "a stored or deflated one");
   }
   const std::string too_long = "is longer than " + std::to_string(most) + " bytes";
-  if (status.size > most) throw Error(where, too_long, "no more than tensors need");
+  if (status.size > most) throw Error(where, too_long, "a smaller one");
   const EntryFile file(zip_fopen_index(archive_.get(), found->second, 0));
   if (!file) throw Error(where, std::string("cannot be read: ") + zip_strerror(archive_.get()));
   std::string content;
@@ -77,7 +77,7 @@ std::string ZipArchive::read(const std::string& entry, std::size_t most) const {
     if (got < 0) throw Error(where, "is damaged: " + std::string(zip_file_strerror(file.get())));
     content.resize(before + static_cast<std::size_t>(got));
     if (got == 0) return content;
-    if (content.size() > most) throw Error(where, too_long, "no more than tensors need");
+    if (content.size() > most) throw Error(where, too_long, "a smaller one");
   }
 }
 
