@@ -2,6 +2,8 @@
 #include "io/furniture.h"
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <tuple>
@@ -19,6 +21,7 @@ using Properties = std::map<std::string, std::string>;
 constexpr const char* kList = "PluginFurnitureCatalog.properties";
 constexpr std::size_t kMostBytes = std::size_t{64} << 20;  // of one file, unpacked
 constexpr std::size_t kMostModels = 100000;
+constexpr std::array<double, 9> kUpright = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
 void append_utf8(std::string& text, unsigned code) {
   if (code < 0x80) {
@@ -72,30 +75,33 @@ class Entry {
     return found == properties_.end() ? "" : found->second;
   }
 
-  double number(const std::string& key) const {
-    const std::string value = text(key);
-    std::string_view rest = value;
-    return take_finite(rest, LineReader({}, kList + (" " + key) + suffix_), "centimetres");
+  /// Throws ps::Error when the catalogue does not give `n` finite numbers.
+  template <std::size_t n>
+  std::array<double, n> numbers(const std::string& key) const {
+    std::array<double, n> values;
+    const std::string all = text(key);
+    std::string_view rest = all;
+    for (double& value : values) {
+      const auto read = to_number<double>(next_token(rest));
+      if (!read || !std::isfinite(*read)) {
+        throw Error(kList, key + suffix_ + " is " + in_quotes(all),
+                    std::to_string(n) + (n == 1 ? " number" : " numbers"));
+      }
+      value = *read;
+    }
+    return values;
   }
+
+  /// @return a length in metres; catalogues hold centimetres
+  double metres(const std::string& key) const { return numbers<1>(key)[0] / 100; }
 
  private:
   const Properties& properties_;
   std::string suffix_;
 };
 
-/// Rows of modelRotation, which turns column vectors.
-std::array<double, 9> rotation(const Entry& entry) {
-  std::array<double, 9> values = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  const std::string text = entry.text("modelRotation");
-  if (text.empty()) return values;
-  std::string_view rest = text;
-  for (double& value : values) {
-    value = take_finite(rest, LineReader({}, "modelRotation"), "an element");
-  }
-  return values;
-}
-
 /// Turns a model, then makes it `size` metres large, its base centred on the origin.
+/// @param turn  rows of a matrix, which turns column vectors
 void place(rooms::Model& model, const std::array<double, 9>& turn,
            const std::array<double, 3>& size) {
   constexpr float kMost = std::numeric_limits<float>::max();
@@ -136,16 +142,17 @@ rooms::Model read_model(const ZipArchive& archive, const Entry& entry, const Obj
   model.category = entry.text("category");
   model.door_or_window = entry.text("doorOrWindow") == "true";
   if (!entry.text("elevation").empty()) {
-    model.elevation = static_cast<float>(entry.number("elevation") / 100);
+    model.elevation = static_cast<float>(entry.metres("elevation"));
   }
-  const std::array<double, 3> size = {entry.number("width") / 100, entry.number("height") / 100,
-                                      entry.number("depth") / 100};
+  const std::array<double, 3> size = {entry.metres("width"), entry.metres("height"),
+                                      entry.metres("depth")};
   if (*std::min_element(size.begin(), size.end()) <= 0) throw Error(file, "has no size");
-  place(model, rotation(entry), size);
+  const bool turned = !entry.text("modelRotation").empty();
+  place(model, turned ? entry.numbers<9>("modelRotation") : kUpright, size);
   return model;
 }
 
-/// Reads the models of a catalogue, with one archive for each thread's turn: libzip shares none.
+/// A model, or why it is left out.
 struct Taken {
   std::optional<rooms::Model> model;
   FurnitureCredit credit;
