@@ -130,7 +130,7 @@ std::string table_of(const std::vector<Summary>& summaries,
 }
 
 Json report_of(const WeightsArguments& a, const std::vector<Summary>& summaries,
-               const TensorMap& tensors) {
+               const TensorMap& tensors, const Metadata& metadata) {
   const std::map<std::string, Count> modules = count_modules(summaries);
   const Count total = total_of(modules);
   Json json;
@@ -140,6 +140,7 @@ Json report_of(const WeightsArguments& a, const std::vector<Summary>& summaries,
   for (const auto& [name, count] : modules) {
     json["modules"][name] = {{"tensors", count.tensors}, {"parameters", count.parameters}};
   }
+  if (!metadata.empty()) json["metadata"] = metadata;
   json["list"] = Json::array();
   for (const Summary& s : summaries) {
     Json entry{{"name", s.name}, {"type", s.type}, {"shape", tensors.at(s.name).shape}};
@@ -148,6 +149,12 @@ Json report_of(const WeightsArguments& a, const std::vector<Summary>& summaries,
     json["list"].push_back(entry);
   }
   return json;
+}
+
+std::string lines_of(const Metadata& metadata) {
+  std::string text = metadata.empty() ? "" : "\n";
+  for (const auto& [key, value] : metadata) text += one_line(key + ": " + value) + "\n";
+  return text;
 }
 
 void print_text(const std::string& text) {
@@ -159,12 +166,13 @@ void print_text(const std::string& text) {
 
 void run_info(const WeightsArguments& a, const Context& context) {
   const TensorMap tensors = read_weight_tensors(a.in);
+  const Metadata metadata = read_metadata(a.in);
   const std::vector<Summary> summaries = summarise(tensors);
   warn_of_bad_values(summaries, context);
   if (context.json) {
-    print_report(context, report_of(a, summaries, tensors));
+    print_report(context, report_of(a, summaries, tensors, metadata));
   } else {
-    print_text(table_of(summaries, count_modules(summaries)));
+    print_text(table_of(summaries, count_modules(summaries)) + lines_of(metadata));
   }
 }
 
@@ -194,7 +202,8 @@ void run_convert(const WeightsArguments& a, const Context& context) {
   const std::vector<Summary> summaries = summarise(tensors);
   warn_of_bad_values(summaries, context);
   throw_if_interrupted();
-  write_safetensors(a.out, stored_as(std::move(tensors), type_of(a.type), a.out));
+  write_safetensors(a.out, stored_as(std::move(tensors), type_of(a.type), a.out),
+                    read_metadata(a.in));
   const Count total = total_of(count_modules(summaries));
   print_report(context, {{"input", a.in},
                          {"output", a.out},

@@ -20,6 +20,7 @@ namespace {
 using Json = nlohmann::json;
 using ReadAt = std::function<void(std::size_t offset, void* to, std::size_t bytes)>;
 
+constexpr const char* kMetadata = "__metadata__";
 constexpr std::size_t kLongestShown = 512;           // of a tensor's name
 constexpr std::size_t kLongestHeader = 100'000'000;  // as the reference implementation
 
@@ -92,7 +93,12 @@ Entry parse_entry(const std::string& key, const Json& json, std::size_t room,
   return entry;
 }
 
-TensorMap parse(std::size_t size, const ReadAt& read, const std::string& name) {
+struct Header {
+  Json json;             ///< an object
+  std::size_t size = 0;  ///< bytes before the data
+};
+
+Header read_header(std::size_t size, const ReadAt& read, const std::string& name) {
   if (size < 8) throw Error(name, std::to_string(size) + " bytes", "a safetensors file");
   std::uint64_t header_size = 0;
   read(0, &header_size, 8);
@@ -101,12 +107,17 @@ TensorMap parse(std::size_t size, const ReadAt& read, const std::string& name) {
   }
   std::string header(header_size, '\0');
   read(8, header.data(), header.size());
-  const Json json = parse_json_text(header, name);
+  Json json = parse_json_text(header, name);
   if (!json.is_object()) throw Error(name, "the header is no JSON object", "tensors by name");
+  return {std::move(json), 8 + header_size};
+}
+
+TensorMap parse(std::size_t size, const ReadAt& read, const std::string& name) {
+  const Header header = read_header(size, read, name);
   std::vector<Entry> entries;
-  for (const auto& [key, value] : json.items()) {
-    if (key == "__metadata__") continue;
-    entries.push_back(parse_entry(key, value, size - 8 - header_size, name));
+  for (const auto& [key, value] : header.json.items()) {
+    if (key == kMetadata) continue;
+    entries.push_back(parse_entry(key, value, size - header.size, name));
   }
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return std::tie(a.begin, a.end) < std::tie(b.begin, b.end);
@@ -122,10 +133,14 @@ TensorMap parse(std::size_t size, const ReadAt& read, const std::string& name) {
   TensorMap tensors;
   for (Entry& entry : entries) {
     entry.tensor.bytes.resize(entry.end - entry.begin);
-    read(8 + header_size + entry.begin, entry.tensor.bytes.data(), entry.tensor.bytes.size());
+    read(header.size + entry.begin, entry.tensor.bytes.data(), entry.tensor.bytes.size());
     tensors.emplace(std::move(entry.name), std::move(entry.tensor));
   }
   return tensors;
+}
+
+ReadAt reader_of(const InputFile& file) {
+  return [&file](std::size_t offset, void* to, std::size_t bytes) { file.read(offset, to, bytes); };
 }
 
 template <class T>
@@ -159,7 +174,7 @@ std::vector<const TensorMap::value_type*> in_data_order(const TensorMap& tensors
     return element_bytes(item->second.dtype).value_or(0);
   };
   for (const auto& item : tensors) {
-    if (item.first == "__metadata__" || width(&item) == 0 ||
+    if (item.first == kMetadata || width(&item) == 0 ||
         product(item.second.shape, width(&item)) != item.second.bytes.size()) {
       throw Error(where, "tensor " + in_quotes(item.first, kLongestShown) + " is unsound",
                   "a known dtype, and bytes that fit the shape");
@@ -214,17 +229,33 @@ TensorMap parse_safetensors(std::string_view bytes, const std::string& name) {
 TensorMap read_safetensors(const std::filesystem::path& path) {
   return guarded(path.string(), [&] {
     const InputFile file(path);
-    const auto read = [&](std::size_t offset, void* to, std::size_t count) {
-      file.read(offset, to, count);
-    };
-    return parse(file.size(), read, path.string());
+    return parse(file.size(), reader_of(file), path.string());
   });
 }
 
-void write_safetensors(const std::filesystem::path& path, const TensorMap& tensors) {
+Metadata read_safetensors_metadata(const std::filesystem::path& path) {
+  const std::string name = path.string();
+  return guarded(name, [&] {
+    const InputFile file(path);
+    const Header header = read_header(file.size(), reader_of(file), name);
+    Metadata metadata;
+    const Json words = header.json.value(kMetadata, Json::object());
+    for (const auto& [key, value] : words.items()) {
+      if (!words.is_object() || !value.is_string()) {
+        throw Error(name, "its metadata " + in_quotes(key) + " is no text", "text by name");
+      }
+      metadata[key] = value.get<std::string>();
+    }
+    return metadata;
+  });
+}
+
+void write_safetensors(const std::filesystem::path& path, const TensorMap& tensors,
+                       const Metadata& metadata) {
   guarded(path.string(), [&] {
     const auto order = in_data_order(tensors, path.string());
     Json json = Json::object();
+    if (!metadata.empty()) json[kMetadata] = metadata;
     std::size_t offset = 0;
     for (const auto* item : order) {
       const FileTensor& tensor = item->second;

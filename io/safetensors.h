@@ -28,6 +28,9 @@ struct FileTensor {
 
 using TensorMap = std::map<std::string, FileTensor>;
 
+/// Words that a file may hold beside its tensors, by name (`__metadata__`).
+using Metadata = std::map<std::string, std::string>;
+
 /// @brief Reads a safetensors file (huggingface/safetensors, "Format"). Throws ps::Error when the
 /// header is unsound, offsets overlap or overrun, sizes disagree with shapes, or the file is too
 /// short.
@@ -36,10 +39,15 @@ TensorMap read_safetensors(const std::filesystem::path& path);
 /// @brief The same from a file's bytes; `name` stands in messages.
 TensorMap parse_safetensors(std::string_view bytes, const std::string& name);
 
+/// @brief Reads the header's `__metadata__` alone; empty when there is none. Throws ps::Error when
+/// the header is unsound, or a value of it is no text.
+Metadata read_safetensors_metadata(const std::filesystem::path& path);
+
 /// @brief Writes all tensors without gaps, as the reference implementation does: wide elements
 /// first, then by name, from a multiple of 8 bytes on, so that each tensor is aligned to its
 /// elements. The file appears whole or not at all. Throws ps::Error when a tensor's bytes do not
 /// fit its shape.
-void write_safetensors(const std::filesystem::path& path, const TensorMap& tensors);
+void write_safetensors(const std::filesystem::path& path, const TensorMap& tensors,
+                       const Metadata& metadata = {});
 
 }  // namespace ps

@@ -105,6 +105,13 @@ FileTensor stored(const std::vector<float>& values, std::vector<std::size_t> sha
   return FileTensor::of(values, std::move(shape));
 }
 
+bool holds_checkpoint(const std::filesystem::path& path) {
+  const InputFile file(path);
+  std::string head(std::min(file.size(), kCheckpointHead), '\0');
+  file.read(0, head.data(), head.size());
+  return is_torch_checkpoint(head);
+}
+
 }  // namespace
 
 bool names_network(const std::string& name) { return is_network(component(name, 0)); }
@@ -131,14 +138,14 @@ std::string project_name(const std::string& name) {
 TensorMap read_weight_tensors(const std::filesystem::path& path) {
   const std::string name = path.string();
   return guarded(name, [&] {
-    std::string head;
-    {
-      const InputFile file(path);
-      head.resize(std::min(file.size(), kCheckpointHead));
-      file.read(0, head.data(), head.size());
-    }
     return under_project_names(
-        is_torch_checkpoint(head) ? read_torch_checkpoint(path) : read_safetensors(path), name);
+        holds_checkpoint(path) ? read_torch_checkpoint(path) : read_safetensors(path), name);
+  });
+}
+
+Metadata read_metadata(const std::filesystem::path& path) {
+  return guarded(path.string(), [&] {
+    return holds_checkpoint(path) ? Metadata() : read_safetensors_metadata(path);
   });
 }
 
@@ -179,14 +186,15 @@ TensorMap stored_as(TensorMap tensors, FloatType type, const std::string& where)
   return tensors;
 }
 
-void write_weights(const std::filesystem::path& path, const nn::Weights& weights, FloatType type) {
+void write_weights(const std::filesystem::path& path, const nn::Weights& weights, FloatType type,
+                   const Metadata& metadata) {
   guarded(path.string(), [&] {
     TensorMap tensors;
     for (const auto& [name, tensor] : weights.tensors()) {
       if (!nn::is_float_type(tensor.type)) continue;
       tensors[name] = stored(tensor.values, tensor.shape, type, path.string(), name);
     }
-    write_safetensors(path, tensors);
+    write_safetensors(path, tensors, metadata);
   });
 }
 

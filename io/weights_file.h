@@ -33,6 +33,10 @@ nn::Weights read_weights(const std::filesystem::path& path);
 /// @brief The same from a file's bytes; `name` stands in messages.
 nn::Weights parse_weights(std::string_view bytes, const std::string& name);
 
+/// @brief The words that a safetensors file holds beside its weights; of a torch checkpoint, none.
+/// Throws ps::Error as read_safetensors_metadata() does.
+Metadata read_metadata(const std::filesystem::path& path);
+
 /// @brief The tensors with all floats stored as `type`, rounded to nearest even; integers stay as
 /// they are. Throws ps::Error that names the tensor when a finite number becomes infinite.
 /// @param where  stands in messages: the file they are for
@@ -41,6 +45,7 @@ TensorMap stored_as(TensorMap tensors, FloatType type, const std::string& where)
 /// @brief Writes weights as safetensors, floats stored as `type`; tensors that are no floats are
 /// left out. The file appears whole or not at all. Throws ps::Error as stored_as() and
 /// write_safetensors() do.
-void write_weights(const std::filesystem::path& path, const nn::Weights& weights, FloatType type);
+void write_weights(const std::filesystem::path& path, const nn::Weights& weights, FloatType type,
+                   const Metadata& metadata = {});
 
 }  // namespace ps

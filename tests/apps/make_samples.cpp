@@ -161,7 +161,7 @@ void write_weights(const fs::path& dir) {
   tensors[prefix + "a.weight"] = FileTensor::of(std::vector<float>{1, 2, 3, 4, 5, 1000}, {2, 3});
   tensors[prefix + "a.count"] = FileTensor::of(std::vector<std::int32_t>{7}, {});
   tensors["fc.bias"] = FileTensor::of(std::vector<float>{0.5f, -0.5f}, {2});
-  write_safetensors(dir / "weights.safetensors", tensors);
+  write_safetensors(dir / "weights.safetensors", tensors, {{"made_by", "hand"}});
   tensors["fc.weight"] = FileTensor::of(std::vector<float>{1, std::nanf(""), 1e5f}, {3});
   write_safetensors(dir / "bad_weights.safetensors", tensors);
   tensors["vqvae.a.weight"] = tensors[prefix + "a.weight"];

@@ -9,6 +9,7 @@ app_test(weights_info_lists_tensors_and_counts_modules [=[
   prints '^fc.bias +F32 +\[2\] +-0.5 +0.5 +0$'
   prints '^vqvae +2 +6$'
   prints '^all +3 +8$'
+  prints '^made_by: hand$'
   is ! -s "$work/err"]=])
 app_test(weights_info_prints_json [=[
   works --json weights info $S/weights.safetensors
@@ -16,6 +17,7 @@ app_test(weights_info_prints_json [=[
   is "$(json parameters "$work/out")" -eq 8
   prints '"name": "vqvae.a.weight"'
   prints '"greatest": 1000'
+  prints '"made_by": "hand"'
   works -q weights info $S/weights.safetensors --json
   prints '"modules"']=])
 app_test(weights_info_warns_of_values_that_are_not_finite [=[
@@ -41,6 +43,10 @@ app_test(weights_convert_stores_halves [=[
   works weights info a.safetensors
   prints '^vqvae.a.weight +F16 +\[2, 3\] +1 +1000 '
   prints '^vqvae.a.count +I32']=])
+app_test(weights_convert_keeps_the_words_beside_the_tensors [=[
+  works weights convert $S/weights.safetensors -o a.safetensors --type f16
+  works weights info a.safetensors
+  prints '^made_by: hand$']=])
 app_test(weights_convert_names_a_tensor_that_does_not_fit_its_type "
   fails 1 \"a.safetensors, tensor 'fc.weight': .*100000.* too large for f16\" -q weights convert $S/bad_weights.safetensors -o a.safetensors --type f16")
 app_test(weights_convert_puts_a_prefix_before_names_without_a_network [=[

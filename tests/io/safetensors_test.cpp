@@ -51,6 +51,27 @@ TEST(Safetensors, our_file_is_aligned_and_without_gaps) {
   EXPECT_EQ(bytes.substr(8 + size), raw(1.f) + "\x07");
 }
 
+TEST(Safetensors, words_beside_the_tensors_read_back_the_same) {
+  const Folder folder;
+  const Metadata words = {{"min_z", "0.5"}, {"what \"it\" is", "d\xc3\xa9pth\n"}};
+  const TensorMap tensors = {{"a", FileTensor::of(std::vector<float>{1}, {1})}};
+  write_safetensors(folder / "w", tensors, words);
+  EXPECT_EQ(read_safetensors_metadata(folder / "w"), words);
+  EXPECT_EQ(read_safetensors(folder / "w").at("a").as_floats(), std::vector<float>{1});
+  write_safetensors(folder / "w", tensors);
+  EXPECT_TRUE(read_safetensors_metadata(folder / "w").empty());
+}
+
+TEST(Safetensors, metadata_that_is_no_text_is_refused) {
+  const Folder folder;
+  for (const char* words : {R"({"a":1})", R"({"a":"b","c":{}})", "[\"a\"]", "\"a\"", "3"}) {
+    put(folder / "w", file(R"({"__metadata__":)" + std::string(words) + "}", ""));
+    EXPECT_TRUE(has(error_of([&] { read_safetensors_metadata(folder / "w"); }), "is no text"));
+  }
+  put(folder / "w", "short");
+  EXPECT_TRUE(has(error_of([&] { read_safetensors_metadata(folder / "w"); }), "w: 5 bytes"));
+}
+
 TEST(Safetensors, every_number_converts_to_float) {
   const auto floats = [](const std::string& dtype, const std::string& data) {
     const std::string n = std::to_string(data.size());

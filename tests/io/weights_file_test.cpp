@@ -85,6 +85,15 @@ TEST(WeightsFile, the_kind_of_file_is_told_by_its_content) {
   EXPECT_TRUE(has(error_of([&] { read_weights(folder / "text"); }), "text"));
 }
 
+TEST(WeightsFile, words_beside_the_weights_are_kept_and_a_checkpoint_has_none) {
+  const Folder folder;
+  const Metadata words = {{"min_z", "0.5"}, {"max_z", "20"}};
+  write_weights(folder / "w", one({1}), FloatType::f16, words);
+  EXPECT_EQ(read_metadata(folder / "w"), words);
+  ps::put(folder / "c", zip_checkpoint(sample(), sample_storages()));
+  EXPECT_TRUE(read_metadata(folder / "c").empty());
+}
+
 TEST(WeightsFile, every_float_is_read_and_integers_are_refused_where_they_are_asked_for) {
   const Folder folder;
   FileTensor half{"F16", {1}, {std::byte{0}, std::byte{0x3e}}};
