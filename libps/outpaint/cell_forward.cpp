@@ -33,26 +33,44 @@ void for_each_input(const models::PixelCnn& network, const Visit& visit) {
 
 /// One run over a group: what its layers share.
 struct CellForward::Step {
-  CellForward& owner;
+  const CellForward& owner;
   const Group& group;
-  std::size_t completions;  ///< rows of a cell
-  bool shared;
+  Lane& lane;
   std::size_t next_store = 0;
-  nn::TensorView x, spare;
-  std::vector<nn::TensorView> skips;  ///< concat_elu of what the up half pushed
+  nn::TensorView x = {}, spare = {};
+  std::vector<nn::TensorView> skips = {};  ///< concat_elu of what the up half pushed
 
-  std::size_t rows() const { return group.cells.size() * completions; }
-  nn::TensorView take(int channels) {
-    return owner.workspace_.take({1, 1, static_cast<int>(rows()), channels});
+  std::size_t rows() const { return group.cells.size() * lane.completions; }
+  nn::TensorView take(int channels) const {
+    return lane.workspace.take({1, 1, static_cast<int>(rows()), channels});
+  }
+
+  /// Where a place's rows begin in a store.
+  static float* at(const Lane& lane, const Store& store, std::size_t place) {
+    return lane.values.get() +
+           (store.before * lane.places + place * store.channels) * lane.completions;
   }
 
   /// Where the group's rows are kept in the next store.
-  nn::TensorView keep(Store** store) {
+  nn::TensorView keep(const Store** store) {
     *store = &owner.stores_[next_store++];
-    const auto channels = static_cast<std::size_t>((*store)->channels);
-    float* data = shared ? (*store)->shared.data() + group.first * channels
-                         : (*store)->varying.data() + group.first * completions * channels;
-    return {data, {1, 1, static_cast<int>(rows()), (*store)->channels}, channels};
+    const auto channels = static_cast<int>((*store)->channels);
+    return {at(lane, **store, group.first),
+            {1, 1, static_cast<int>(rows()), channels},
+            (*store)->channels};
+  }
+
+  /// The rows that a tap of a cell reads: one for all completions, or one for each.
+  struct Source {
+    const float* begin = nullptr;  ///< null = nothing
+    std::size_t step = 0;
+  };
+  Source source(const Store& store, int cell) const {
+    if (cell < 0) return {};
+    const auto index = static_cast<std::size_t>(cell);
+    const auto place = static_cast<std::size_t>(owner.plan_.place[index]);
+    if (owner.plan_.is_shared[index]) return {at(owner.shared_, store, place), 0};
+    return {at(lane, store, place), store.channels};
   }
 
   void convolve(const nn::MaskedConvolution& convolution, const Store& store,
@@ -61,11 +79,15 @@ struct CellForward::Step {
     product.count = rows();
     product.taps = kTaps;
     product.sources = [&](std::size_t begin, std::size_t end, const float** pointers) {
-      for (std::size_t row = begin; row < end; ++row) {
-        const int* cells = seen.data() + row / completions * kTaps;
+      for (std::size_t row = begin; row < end;) {
+        const std::size_t cell = row / lane.completions, first = row;
+        const std::size_t last = std::min(end, (cell + 1) * lane.completions);
         for (int tap = 0; tap < kTaps; ++tap) {
-          pointers[nn::slot_of(row - begin, tap, kTaps)] =
-              cells[tap] < 0 ? nullptr : owner.kept(store, cells[tap], row % completions);
+          const Source from = source(store, seen[cell * kTaps + static_cast<std::size_t>(tap)]);
+          const float* next = from.begin + (first - cell * lane.completions) * from.step;
+          for (row = first; row < last; ++row, next += from.step) {
+            pointers[nn::slot_of(row - begin, tap, kTaps)] = from.begin ? next : nullptr;
+          }
         }
       }
     };
@@ -74,17 +96,17 @@ struct CellForward::Step {
     nn::indirect_product(convolution.matrix(), product, out, epilogue);
   }
 
-  void first(const std::function<std::int32_t(int, std::size_t)>& code) const {
+  void first(const Code& code) const {
     const models::CodeConvolution& layer = owner.network_.first();
     const auto channels = static_cast<std::size_t>(layer.out_channels());
     parallel_chunks(rows(), 64, [&](std::size_t begin, std::size_t end) {
       for (std::size_t row = begin; row < end; ++row) {
-        const int* cells = group.near.data() + row / completions * kTaps;
+        const int* cells = group.near.data() + row / lane.completions * kTaps;
         float* to = x.pixel(row);
         std::copy(layer.bias().begin(), layer.bias().end(), to);
         for (int tap = 0; tap < kTaps; ++tap) {
           if (tap == kTaps / 2 || cells[tap] < 0) continue;
-          const float* add = layer.row(tap, code(cells[tap], row % completions));
+          const float* add = layer.row(tap, code(cells[tap], row % lane.completions));
           for (std::size_t i = 0; i < channels; ++i) to[i] += add[i];
         }
       }
@@ -95,7 +117,7 @@ struct CellForward::Step {
   /// @param elu   concat_elu of x, kept in `store`
   /// @param skip  concat_elu of the other input, or null
   void block(const models::GatedBlock& layers, const Store& store, const nn::TensorView* skip) {
-    const nn::Workspace::Scope scope(owner.workspace_);
+    const nn::Workspace::Scope scope(lane.workspace);
     const int f = x.shape.channels;
     const nn::TensorView h = take(f), gates = take(2 * f), value = gates.channels(0, f);
     convolve(layers.input, store, group.near, h);
@@ -105,7 +127,7 @@ struct CellForward::Step {
       add.residual = &h;
       (*layers.skip)(*skip, h, add);
     }
-    Store* inner = nullptr;
+    const Store* inner = nullptr;
     nn::concat_elu(h, keep(&inner));
     convolve(layers.output, *inner, group.near, gates);
     nn::positional_norm(value, value);
@@ -114,7 +136,7 @@ struct CellForward::Step {
   }
 
   void dilate(const nn::MaskedConvolution& layer) {
-    Store* store = nullptr;
+    const Store* store = nullptr;
     const nn::TensorView kept = keep(&store);
     for (std::size_t row = 0; row < rows(); ++row) {
       std::copy_n(x.pixel(row), x.shape.channels, kept.pixel(row));
@@ -127,7 +149,7 @@ struct CellForward::Step {
   void up() {
     for (const models::GatedStage& stage : owner.network_.up()) {
       for (const models::GatedBlock& layers : stage.blocks) {
-        Store* store = nullptr;
+        const Store* store = nullptr;
         const nn::TensorView elu = keep(&store);
         nn::concat_elu(x, elu);
         skips.push_back(elu);
@@ -143,7 +165,7 @@ struct CellForward::Step {
   void down() {
     for (const models::GatedStage& stage : owner.network_.down()) {
       for (const models::GatedBlock& layers : stage.blocks) {
-        Store* store = nullptr;
+        const Store* store = nullptr;
         nn::concat_elu(x, keep(&store));
         const nn::TensorView skip = skips.back();
         skips.pop_back();
@@ -157,58 +179,45 @@ struct CellForward::Step {
 CellForward::CellForward(const models::PixelCnn& network, const Plan& plan)
     : network_(network), plan_(plan) {
   for_each_input(network, [&](int channels) {
-    stores_.push_back({channels, {}, {}});
-    stores_.back().shared.resize(plan.shared.cells.size() * static_cast<std::size_t>(channels));
+    stores_.push_back({static_cast<std::size_t>(channels), channels_});
+    channels_ += stores_.back().channels;
   });
 }
 
-void CellForward::resize(std::size_t completions) {
-  completions_ = completions;
-  for (Store& store : stores_) {
-    const std::size_t count =
-        plan_.varying * completions * static_cast<std::size_t>(store.channels);
-    if (store.varying.size() < count) store.varying.resize(count);
-  }
+void CellForward::resize(Lane& lane, std::size_t places, std::size_t completions) const {
+  lane.places = places;
+  lane.completions = completions;
+  const std::size_t floats = channels_ * places * completions;
+  if (lane.capacity >= floats) return;
+  lane.values.reset();
+  lane.values = nn::aligned_floats(floats);
+  lane.capacity = floats;
 }
 
-const float* CellForward::kept(const Store& store, int cell, std::size_t completion) const {
-  const auto at = static_cast<std::size_t>(cell);
-  const auto place = static_cast<std::size_t>(plan_.place[at]);
-  const auto channels = static_cast<std::size_t>(store.channels);
-  if (plan_.is_shared[at]) return store.shared.data() + place * channels;
-  return store.varying.data() + (place * completions_ + completion) * channels;
+void CellForward::resize(Lane& lane, std::size_t completions) const {
+  resize(lane, plan_.lane_places, completions);
 }
 
-nn::TensorView CellForward::run(
-    const Group& group, bool shared,
-    const std::function<std::int32_t(int cell, std::size_t completion)>& code) {
-  const nn::Workspace::Scope scope(workspace_);
-  Step step{*this, group, shared ? 1 : completions_, shared, 0, {}, {}, {}};
-  const std::size_t sampled = group.missing * step.completions;
-  const nn::TensorView logits =
-      workspace_.take({1, 1, static_cast<int>(sampled), network_.codes()});
+nn::TensorView CellForward::run_shared(const Code& code) {
+  resize(shared_, plan_.shared.cells.size(), 1);
+  return run(plan_.shared, shared_, code);
+}
+
+nn::TensorView CellForward::run(const Group& group, Lane& lane, const Code& code) const {
+  const nn::Workspace::Scope scope(lane.workspace);
+  Step step{*this, group, lane};
+  const auto sampled = static_cast<int>(group.missing * lane.completions);
+  const nn::TensorView logits = lane.workspace.take({1, 1, sampled, network_.codes()});
   step.x = step.take(network_.channels());
   step.spare = step.take(network_.channels());
   step.first(code);
   step.up();
   step.down();
   nn::TensorView last = step.x;
-  last.shape.width = static_cast<int>(sampled);  // missing cells come first
+  last.shape.width = sampled;  // missing cells come first
   nn::elu(last, last);
   network_.last()(last, logits);
   return logits;
-}
-
-std::size_t CellForward::bytes_each() const {
-  std::size_t floats = 0;
-  for (const Store& store : stores_) floats += static_cast<std::size_t>(store.channels);
-  return floats * sizeof(float);
-}
-
-std::size_t CellForward::bytes() const {
-  std::size_t floats = 0;
-  for (const Store& store : stores_) floats += store.shared.size() + store.varying.size();
-  return floats * sizeof(float) + workspace_.bytes();
 }
 
 }  // namespace ps::outpaint

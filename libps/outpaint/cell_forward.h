@@ -12,44 +12,55 @@
 
 namespace ps::outpaint {
 
-/// @brief Keeps what later cells read of earlier ones: the inputs of all locally masked
-/// convolutions.
+/// @brief Memory of completions that advance together: what later cells read of earlier ones (the
+/// inputs of all locally masked convolutions), and scratch memory.
+struct Lane {
+  std::size_t places = 0, completions = 0;
+  nn::AlignedFloats values;  ///< [convolutions][places][completions][channels]
+  std::size_t capacity = 0;  ///< floats
+  nn::Workspace workspace;
+
+  std::size_t bytes() const { return capacity * sizeof(float) + workspace.bytes(); }
+};
+
+/// @brief Computes the shared cells once, then the others level by level, in lanes.
 class CellForward {
  public:
   CellForward(const models::PixelCnn& network, const Plan& plan);
 
-  /// @brief Makes room for the cells that differ between completions. What was kept of them is
-  /// lost.
-  void resize(std::size_t completions);
+  /// The code of a cell of a lane's completion.
+  using Code = std::function<std::int32_t(int cell, std::size_t completion)>;
 
-  /// @brief Computes the shared cells, or the cells of a level for all completions.
-  /// @param code  (cell, completion) -> the code there, for all cells that the group sees
-  /// @return logits of the group's missing cells, [cells][completions or 1, if shared][codes],
-  /// until the
-  ///         next call
-  nn::TensorView run(const Group& group, bool shared,
-                     const std::function<std::int32_t(int cell, std::size_t completion)>& code);
+  /// @brief Computes the shared cells. Before any lane is run.
+  /// @return logits of those that are missing, [cells][codes], until the next call
+  nn::TensorView run_shared(const Code& code);
 
-  std::size_t bytes() const;
-  /// @return bytes for each cell and completion
-  std::size_t bytes_each() const;
+  /// @brief Makes room for so many completions. What was kept is lost.
+  void resize(Lane& lane, std::size_t completions) const;
+
+  /// @brief Computes the cells of a level for all completions of a lane. Lanes may run at once.
+  /// @return logits of the missing cells, [cells][completions][codes], until the lane's next call
+  nn::TensorView run(const Group& level, Lane& lane, const Code& code) const;
+
+  std::size_t bytes() const { return shared_.bytes(); }
+  /// @return bytes that a lane keeps for each completion
+  std::size_t bytes_each() const { return plan_.lane_places * channels_ * sizeof(float); }
 
  private:
-  /// The input of one locally masked convolution, for all cells.
+  /// The input of one locally masked convolution.
   struct Store {
-    int channels = 0;
-    std::vector<float> shared;   ///< [cells][channels]
-    std::vector<float> varying;  ///< [cells][completions][channels]
+    std::size_t channels;
+    std::size_t before;  ///< channels of all stores before it
   };
   struct Step;
 
-  const float* kept(const Store& store, int cell, std::size_t completion) const;
+  void resize(Lane& lane, std::size_t places, std::size_t completions) const;
 
   const models::PixelCnn& network_;
   const Plan& plan_;
   std::vector<Store> stores_;  ///< in the order in which a forward needs them
-  std::size_t completions_ = 0;
-  nn::Workspace workspace_;
+  std::size_t channels_ = 0;   ///< of all stores
+  Lane shared_;                ///< one completion that all others share
 };
 
 }  // namespace ps::outpaint

@@ -68,6 +68,47 @@ void complete(const Order& order, Group& group) {
   }
 }
 
+/// By level: the last level that looks at it.
+std::vector<std::size_t> last_readers(const std::vector<Group>& levels, std::size_t cells) {
+  constexpr std::size_t kShared = ~std::size_t{0};
+  std::vector<std::size_t> level_of(cells, kShared), last(levels.size());
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    last[i] = i;
+    for (const int cell : levels[i].cells) level_of[static_cast<std::size_t>(cell)] = i;
+    for (const auto* seen : {&levels[i].near, &levels[i].far}) {
+      for (const int cell : *seen) {
+        const std::size_t level = cell < 0 ? kShared : level_of[static_cast<std::size_t>(cell)];
+        if (level != kShared) last[level] = i;
+      }
+    }
+  }
+  return last;
+}
+
+/// Gives each level the first run of places that nothing else needs while it is needed.
+/// @return how many places that takes
+std::size_t place_levels(std::vector<Group>& levels, std::size_t cells) {
+  struct Taken {
+    std::size_t begin, end, until;
+  };
+  const std::vector<std::size_t> last = last_readers(levels, cells);
+  std::vector<Taken> taken;  // rising
+  std::size_t places = 0;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    taken.erase(std::remove_if(taken.begin(), taken.end(),
+                               [&](const Taken& other) { return other.until < i; }),
+                taken.end());
+    const std::size_t count = levels[i].cells.size();
+    std::size_t begin = 0;
+    auto before = taken.begin();
+    for (; before != taken.end() && before->begin < begin + count; ++before) begin = before->end;
+    taken.insert(before, {begin, begin + count, last[i]});
+    levels[i].first = begin;
+    places = std::max(places, begin + count);
+  }
+  return places;
+}
+
 }  // namespace
 
 Plan::Plan(const Order& order) : place(order.size(), -1), is_shared(order.size(), 0) {
@@ -84,15 +125,15 @@ Plan::Plan(const Order& order) : place(order.size(), -1), is_shared(order.size()
   levels.erase(std::remove_if(levels.begin(), levels.end(),
                               [](const Group& group) { return group.cells.empty(); }),
                levels.end());
-  const auto number = [&](Group& group, std::size_t first) {
-    complete(order, group);
-    group.first = first;
-    for (const int cell : group.cells)
-      place[static_cast<std::size_t>(cell)] = static_cast<int>(first++);
-    return first;
+  complete(order, shared);
+  for (Group& group : levels) complete(order, group);
+  lane_places = place_levels(levels, order.size());
+  const auto number = [&](const Group& group) {
+    auto next = static_cast<int>(group.first);
+    for (const int cell : group.cells) place[static_cast<std::size_t>(cell)] = next++;
   };
-  number(shared, 0);
-  for (Group& group : levels) varying = number(group, varying);
+  number(shared);
+  for (const Group& group : levels) number(group);
 }
 
 }  // namespace ps::outpaint

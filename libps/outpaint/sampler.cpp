@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <mutex>
 
 #include "libps/core/error.h"
 #include "libps/core/parallel.h"
@@ -13,12 +15,16 @@
 namespace ps::outpaint {
 namespace {
 
-constexpr std::size_t kMemory = std::size_t{700} << 20;  ///< bytes for activations that differ
-constexpr std::size_t kMostAtOnce = 60;                  ///< completions; more rows gain nothing
+constexpr std::size_t kMemory = std::size_t{700} << 20;  ///< bytes that all lanes keep
+constexpr std::size_t kMost = 16;  ///< completions of a lane; more rows gain nothing
 
 void check(const SampleOptions& options, int first, int count, const Order& order, int codes) {
   if (first < 0) throw Error("first completion", std::to_string(first), "0 or more");
   if (count < 0) throw Error("completions", std::to_string(count), "0 or more");
+  if (first > std::numeric_limits<int>::max() - count) {
+    throw Error("completions", std::to_string(count) + " from " + std::to_string(first) + " on",
+                "numbers of 31 bits");
+  }
   if (!(options.temperature >= 0 && options.temperature <= 2)) {
     throw Error("temperature", std::to_string(options.temperature), "0 to 2");
   }
@@ -81,72 +87,121 @@ class Sampler::Impl {
 
   std::vector<Completion> sample(int first, int count, const SampleOptions& options) {
     check(options, first, count, order_, network_.codes());
-    std::vector<Completion> all;
-    if (missing_ > 0 && count > 0 && shared_logits_.empty()) run_shared();
-    const std::size_t at_once = completions_at_once();
     const auto wanted = static_cast<std::size_t>(count);
-    const std::size_t rounds = (wanted + at_once - 1) / std::max<std::size_t>(at_once, 1);
-    for (std::size_t round = 0; round < rounds; ++round) {
-      const std::size_t begin = wanted * round / rounds, end = wanted * (round + 1) / rounds;
-      const auto report = [&](double done) {
-        return !options.progress ||
-               options.progress((static_cast<double>(round) + done) / static_cast<double>(rounds));
-      };
-      if (!sample_round(first + static_cast<int>(begin), end - begin, options, report, all))
-        return {};
+    Run run{options, first, std::vector<Completion>(wanted, Completion{known_, 0})};
+    run.whole = std::max<std::size_t>(wanted * missing_, 1);
+    if (!run.report(0)) return {};
+    if (missing_ > 0 && count > 0) {
+      run_shared();
+      const std::size_t parts = parts_of(wanted);
+      parallel_for(parts, [&](std::size_t i) {
+        sample_part(run, wanted * i / parts, wanted * (i + 1) / parts);
+      });
     }
-    return all;
+    if (!run.report(run.whole - run.done)) return {};
+    return std::move(run.completions);
   }
 
   std::size_t missing() const { return missing_; }
   std::size_t levels() const { return plan_.levels.size(); }
-  std::size_t bytes() const { return forward_.bytes() + shared_logits_.size() * sizeof(float); }
+  std::size_t bytes() const {
+    std::size_t sum = forward_.bytes() + shared_logits_.size() * sizeof(float);
+    for (const auto& lane : idle_lanes_) sum += lane->bytes();
+    return sum;
+  }
 
  private:
-  std::size_t completions_at_once() const {
-    const std::size_t each = std::max<std::size_t>(plan_.varying * forward_.bytes_each(), 1);
-    return std::min(std::max<std::size_t>(kMemory / each, 1), kMostAtOnce);
+  /// One call of sample.
+  struct Run {
+    const SampleOptions& options;
+    int first;
+    std::vector<Completion> completions;
+    std::size_t done = 0, whole = 1;  ///< cells of all completions
+    bool stopped = false;
+    std::mutex mutex = {};
+
+    /// @return whether to go on
+    bool report(std::size_t more) {
+      const std::lock_guard<std::mutex> lock(mutex);
+      done += more;
+      if (!options.progress || stopped) return !stopped;
+      stopped = true;  // should it throw
+      stopped = !options.progress(static_cast<double>(done) / static_cast<double>(whole));
+      return !stopped;
+    }
+  };
+
+  /// How many parts completions are split into. Each goes through all levels by itself, on one
+  /// thread; so no thread waits for another, and reads what it wrote itself.
+  std::size_t parts_of(std::size_t count) const {
+    const auto cores = static_cast<std::size_t>(threads());
+    const std::size_t fit = kMemory / std::max<std::size_t>(forward_.bytes_each() * cores, 1);
+    const std::size_t most = std::min(std::max<std::size_t>(fit, 1), kMost);
+    const std::size_t turns = (count + most * cores - 1) / (most * cores);
+    return std::min(count, turns * cores);
   }
 
   void run_shared() {
-    const nn::TensorView logits = forward_.run(plan_.shared, true, [this](int cell, std::size_t) {
-      return known_[static_cast<std::size_t>(cell)];
-    });
+    if (shared_done_) return;
+    const nn::TensorView logits = forward_.run_shared(
+        [this](int cell, std::size_t) { return known_[static_cast<std::size_t>(cell)]; });
     shared_logits_.assign(logits.data, logits.pixel(logits.shape.pixels()));
+    shared_done_ = true;
   }
 
-  template <class Report>
-  bool sample_round(int first, std::size_t count, const SampleOptions& options,
-                    const Report& report, std::vector<Completion>& all) {
-    const std::size_t begin = all.size();
-    all.resize(begin + count, {known_, 0});
-    Completion* completions = all.data() + begin;
-    forward_.resize(count);
+  /// Samples completions [begin, end) of a run, all levels.
+  void sample_part(Run& run, std::size_t begin, std::size_t end) {
+    std::unique_ptr<Lane> lane = take_lane();
+    forward_.resize(*lane, end - begin);
+    const Completion* completions = run.completions.data() + begin;
     const auto codes = static_cast<std::size_t>(network_.codes());
+    /// `logits` are [missing cells][rows_each][codes]; rows_each is 1, or end - begin.
     const auto sample = [&](const Group& group, std::size_t rows_each, const float* logits) {
-      parallel_chunks(count, 4, [&](std::size_t from, std::size_t to) {
-        for (std::size_t k = from; k < to; ++k) {
-          for (std::size_t i = 0; i < group.missing; ++i) {
-            take(group.cells[i], first + static_cast<int>(k),
-                 logits + (i * rows_each + k % rows_each) * codes, options, completions[k]);
-          }
+      for (std::size_t k = begin; k < end; ++k) {
+        for (std::size_t i = 0; i < group.missing; ++i) {
+          take(group.cells[i], run.first + static_cast<int>(k),
+               logits + (i * rows_each + (k - begin) % rows_each) * codes, run.options,
+               run.completions[k]);
         }
-      });
+      }
+      return run.report(group.missing * (end - begin));
     };
-    sample(plan_.shared, 1, shared_logits_.data());
-    std::size_t done = plan_.shared.missing;
-    for (const Group& level : plan_.levels) {
-      if (!report(static_cast<double>(done) / static_cast<double>(missing_))) return false;
-      const nn::TensorView logits = forward_.run(level, false, [&](int cell, std::size_t k) {
+    bool go_on = sample(plan_.shared, 1, shared_logits_.data());
+    for (std::size_t i = 0; i < plan_.levels.size() && go_on; ++i) {
+      const Group& level = plan_.levels[i];
+      const nn::TensorView logits = forward_.run(level, *lane, [&](int cell, std::size_t k) {
         return completions[k].codes[static_cast<std::size_t>(cell)];
       });
-      sample(level, count, logits.data);
-      done += level.missing;
+      go_on = sample(level, end - begin, logits.data);
     }
-    for (std::size_t k = 0; k < count && missing_ > 0; ++k) {
-      completions[k].log_likelihood /= static_cast<double>(missing_);
+    for (std::size_t k = begin; k < end; ++k) {
+      run.completions[k].log_likelihood /= static_cast<double>(missing_);
     }
-    return report(1);
+    give_back(std::move(lane));
+  }
+
+  std::unique_ptr<Lane> take_lane() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (idle_lanes_.empty()) return std::make_unique<Lane>();
+    std::unique_ptr<Lane> lane = std::move(idle_lanes_.back());
+    idle_lanes_.pop_back();
+    return lane;
+  }
+  void give_back(std::unique_ptr<Lane> lane) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    idle_lanes_.push_back(std::move(lane));
+  }
+
+  void check_finite(int cell, int completion, const float* logits) const {
+    const float* end = logits + network_.codes();
+    const float* bad = std::find_if_not(logits, end, [](float x) { return std::isfinite(x); });
+    if (bad == end) return;
+    const int row = cell / order_.width, column = cell % order_.width;
+    throw Error("sampler",
+                "logit " + std::to_string(bad - logits) + " of cell " + std::to_string(cell) +
+                    " (row " + std::to_string(row) + ", column " + std::to_string(column) +
+                    ") of completion " + std::to_string(completion) + " is " + std::to_string(*bad),
+                "finite numbers: the network's weights overflow");
   }
 
   /// Chooses one cell's code.
@@ -154,6 +209,7 @@ class Sampler::Impl {
             Completion& to) const {
     thread_local std::vector<float> probabilities;
     const int codes = network_.codes();
+    check_finite(cell, completion, logits);
     const auto likeliest =
         static_cast<std::size_t>(std::max_element(logits, logits + codes) - logits);
     auto code = static_cast<std::int32_t>(likeliest);
@@ -178,7 +234,10 @@ class Sampler::Impl {
   Plan plan_;
   CellForward forward_;
   std::size_t missing_ = 0;
+  bool shared_done_ = false;
   std::vector<float> shared_logits_;  ///< of the shared cells that are missing
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Lane>> idle_lanes_;
 };
 
 Sampler::Sampler(const models::PixelCnn& network, const Order& order,

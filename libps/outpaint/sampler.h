@@ -18,7 +18,8 @@ struct SampleOptions {
   /// By cell, as many as the order has: taken in place of what would be drawn (teacher forcing);
   /// null = draw.
   const std::int32_t* forced = nullptr;
-  /// Told what share is done; sampling stops when it returns false.
+  /// Told what share is done, from 0 to 1, never falling: one call at a time, from any thread.
+  /// Sampling stops when it returns false, or throws.
   std::function<bool(double done)> progress;
   /// Told the logits of every cell as it is sampled, from any thread.
   std::function<void(int cell, int completion, const float* logits)> observe;
@@ -33,11 +34,12 @@ struct Completion {
 ///
 /// What a cell computes depends only on cells earlier in the order, and is final when it is
 /// sampled; so each layer of each cell is computed once, not once for every later cell. Known cells
-/// that see nothing missing are computed once for all completions. The others advance in levels of
-/// cells that do not see each other, all completions at once, so that each layer is one matrix
-/// product. A completion is a function of (network, order, codes, seed, view, its number): the same
-/// bits however many are drawn, in whatever rounds, on however many threads. Not for two threads at
-/// once.
+/// that see nothing missing are computed once for all completions. The others come in levels of
+/// cells that do not see each other; each thread takes some completions through all levels, so that
+/// each layer is one product of (cells x completions) rows. What no later cell sees is forgotten.
+/// Memory does not grow with the number of completions beyond 16 for each thread. A completion is a
+/// function of (network, order, codes, seed, view, its number): the same bits however many are
+/// drawn, in whatever rounds, on however many threads. Not for two threads at once.
 class Sampler {
  public:
   /// @param network  must outlive the sampler
@@ -50,8 +52,8 @@ class Sampler {
 
   /// @brief Draws completions [first, first + count).
   /// @return them, or nothing when options.progress stopped it
-  /// Throws ps::Error when first or count is negative, the temperature not in [0, 2], or a forced
-  /// code unknown.
+  /// Throws ps::Error when first or count is negative, the temperature not in [0, 2], a forced code
+  /// unknown, or a logit not finite (which cell, of which completion).
   std::vector<Completion> sample(int first, int count, const SampleOptions& options = {});
 
   std::size_t missing() const;  ///< cells to sample in each completion
