@@ -171,13 +171,14 @@ void Reader::cut(const std::vector<Mask>& opaque) {
     const int texture = model.materials[triangle.material].texture;
     if (texture < 0 || opaque[static_cast<std::size_t>(texture)].empty()) return false;
     const Mask& mask = opaque[static_cast<std::size_t>(texture)];
-    const auto& [a, b, c] = triangle.corners;
+    const auto &a = model.uvs[triangle.corners[0]], &b = model.uvs[triangle.corners[1]],
+               &c = model.uvs[triangle.corners[2]];
     int seen = 0;
     for (int i = 0; i < kCutSteps; ++i) {
       for (int j = 0; j + i < kCutSteps; ++j) {
         const double s = (i + 1.0 / 3) / kCutSteps, t = (j + 1.0 / 3) / kCutSteps;
         const auto at = [&](std::size_t axis) {
-          return model.uvs[a][axis] * (1 - s - t) + model.uvs[b][axis] * s + model.uvs[c][axis] * t;
+          return a[axis] * (1 - s - t) + b[axis] * s + c[axis] * t;
         };
         seen += mask(wrapped(-at(1), mask.rows), wrapped(at(0), mask.cols)) != 0 ? 1 : -1;
       }

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/scene/photo_depth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+#include "libps/core/error.h"
+
+namespace ps {
+namespace {
+
+constexpr int kSide = models::DepthNet::kMultiple;
+constexpr int kMostApart = 160;  ///< from one square to the next, pixels
+constexpr int kMostAspect = 100;
+
+void check(const Image& photo, const DepthScale& scale) {
+  if (photo.empty()) throw Error("photo", "has no pixels", "at least one");
+  const auto [shorter, longer] = std::minmax(photo.cols, photo.rows);
+  if (longer / shorter > kMostAspect) {
+    throw Error("photo", "is " + std::to_string(photo.cols) + "x" + std::to_string(photo.rows),
+                "a long side of at most " + std::to_string(kMostAspect) + " short ones");
+  }
+  const bool sound = scale.min_z > 0 && scale.max_z > scale.min_z && std::isfinite(scale.max_z) &&
+                     scale.canonical_focal > 0 && std::isfinite(scale.canonical_focal);
+  if (!sound) throw Error("depth scale", "is unsound", "0 < min_z < max_z, canonical_focal > 0");
+}
+
+/// Averages where it shrinks.
+template <class Pixels>
+Pixels resized_to(const Pixels& image, cv::Size size) {
+  if (image.size() == size) return image;
+  Pixels out;
+  const bool shrinks = size.area() < image.size().area();
+  cv::resize(image, out, size, 0, 0, shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
+  return out;
+}
+
+/// @return where squares begin along a side of `length` pixels: evenly, from end to end
+std::vector<int> square_starts(int length) {
+  const int steps = (length - kSide + kMostApart - 1) / kMostApart;
+  std::vector<int> starts = {0};
+  for (int i = 1; i <= steps; ++i) {
+    starts.push_back(static_cast<int>(std::int64_t{length - kSide} * i / steps));
+  }
+  return starts;
+}
+
+cv::Mat1f log_depth_of(const models::DepthNet& net, const Image& square, const DepthScale& scale,
+                       nn::Workspace& workspace) {
+  const nn::Workspace::Scope scope(workspace);
+  const nn::TensorView image = workspace.take({1, kSide, kSide, 3});
+  const nn::TensorView depth = workspace.take({1, kSide, kSide, 1});
+  cv::Mat input(kSide, kSide, CV_32FC3, image.data);
+  square.convertTo(input, CV_32F, 2, -1);
+  net.forward(image, depth, workspace);
+  models::depth_of_raw(depth, scale.min_z, scale.max_z, depth);
+  cv::Mat1f logarithm;
+  cv::log(cv::Mat1f(kSide, kSide, depth.data), logarithm);
+  return logarithm;
+}
+
+/// The median of `later` - `earlier` where they overlap, `apart` columns after the earlier began.
+float median_step(const cv::Mat1f& earlier, const cv::Mat1f& later, int apart) {
+  const cv::Mat1f difference = later.colRange(0, kSide - apart) - earlier.colRange(apart, kSide);
+  std::vector<float> values(difference.begin(), difference.end());
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Adds a constant to each square, so that it goes on from the one before; the mean of all
+/// constants is 0, as no square knows the scale better than another.
+void align(std::vector<cv::Mat1f>& squares, const std::vector<int>& starts) {
+  std::vector<double> shifts = {0};
+  for (std::size_t i = 1; i < squares.size(); ++i) {
+    const int apart = starts[i] - starts[i - 1];
+    shifts.push_back(shifts.back() - median_step(squares[i - 1], squares[i], apart));
+  }
+  const double mean =
+      std::accumulate(shifts.begin(), shifts.end(), 0.0) / static_cast<double>(shifts.size());
+  for (std::size_t i = 0; i < squares.size(); ++i) squares[i] += shifts[i] - mean;
+}
+
+/// Their weighted mean; a column's weight falls to 0 towards the square's ends, so that none begins
+/// or ends with a step.
+cv::Mat1f blended(const std::vector<cv::Mat1f>& squares, const std::vector<int>& starts) {
+  cv::Mat1f out = cv::Mat1f::zeros(kSide, starts.back() + kSide);
+  std::vector<float> weights(static_cast<std::size_t>(out.cols));
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    for (int x = 0; x < kSide; ++x) {
+      const double root = std::sin(CV_PI * (x + 0.5) / kSide);
+      const auto weight = static_cast<float>(root * root);
+      weights[static_cast<std::size_t>(starts[i] + x)] += weight;
+      out.col(starts[i] + x) += weight * squares[i].col(x);
+    }
+  }
+  for (int x = 0; x < out.cols; ++x) out.col(x) /= weights[static_cast<std::size_t>(x)];
+  return out;
+}
+
+}  // namespace
+
+Depth photo_depth(const models::DepthNet& net, const Image& photo, const Intrinsics& lens,
+                  const DepthScale& scale) {
+  check(photo, scale);
+  check(lens, "photo_depth");
+  // Squares stand side by side: an upright photo's depth is made on its side.
+  const bool upright = photo.rows > photo.cols;
+  const int shorter = std::min(photo.cols, photo.rows), longer = std::max(photo.cols, photo.rows);
+  const double shrink = static_cast<double>(kSide) / shorter;
+  const int length = std::max(kSide, static_cast<int>(std::lround(longer * shrink)));
+  const Image small =
+      resized_to(photo, upright ? cv::Size(kSide, length) : cv::Size(length, kSide));
+  const std::vector<int> starts = square_starts(length);
+  std::vector<cv::Mat1f> squares;
+  nn::Workspace workspace;
+  for (const int start : starts) {
+    const cv::Point at = upright ? cv::Point(0, start) : cv::Point(start, 0);
+    squares.push_back(
+        log_depth_of(net, small(cv::Rect(at, cv::Size(kSide, kSide))), scale, workspace));
+    if (upright) squares.back() = squares.back().t();
+  }
+  align(squares, starts);
+  cv::Mat1f logarithm = blended(squares, starts);
+  if (upright) logarithm = logarithm.t();
+  Depth depth;
+  cv::exp(resized_to(logarithm, photo.size()), depth);
+  const double focal = std::sqrt(lens.fx * lens.fy) * shrink;  // pixels of a square
+  return depth * (focal / (scale.canonical_focal * kSide));
+}
+
+}  // namespace ps
