@@ -3,48 +3,16 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <iterator>
 #include <numeric>
 
 #include "libps/core/error.h"
-#include "libps/core/random.h"
+#include "libps/outpaint/progress.h"
+#include "libps/outpaint/view_pictures.h"
 
 namespace ps::outpaint {
 namespace {
-
-constexpr int kCell = models::Autoencoder::kCell;
-constexpr int kDecoderReach = 4 * kCell;  ///< pixels of the image that a code can reach
-constexpr int kRefinerReach =
-    48;  ///< and that a pixel of the refiner's input can (41), in whole cells
-constexpr std::uint32_t kNoise = 1;  ///< purpose of a random number, in its counter
-
-cv::Rect grown(const cv::Rect& rect, int by, const cv::Size& size) {
-  const cv::Rect all(0, 0, size.width, size.height);
-  return cv::Rect(rect.x - by, rect.y - by, rect.width + 2 * by, rect.height + 2 * by) & all;
-}
-
-/// The smallest rectangle of whole cells around the background; empty without any.
-cv::Rect cells_around(const cv::Mat1b& background) {
-  cv::Rect rect;
-  for (int y = 0; y < background.rows; y += kCell) {
-    for (int x = 0; x < background.cols; x += kCell) {
-      const cv::Rect cell(x, y, kCell, kCell);
-      if (cv::countNonZero(background(cell)) > 0) rect = rect.empty() ? cell : rect | cell;
-    }
-  }
-  return rect;
-}
-
-/// Copies channels of a rectangle from one place to another of the same kind.
-void copy(const nn::TensorView& from, cv::Point from_at, const nn::TensorView& to, cv::Point to_at,
-          cv::Size size, int channels) {
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) {
-      std::copy_n(from.pixel(0, from_at.y + y, from_at.x + x), channels,
-                  to.pixel(0, to_at.y + y, to_at.x + x));
-    }
-  }
-}
 
 class Clock {
  public:
@@ -70,10 +38,15 @@ void check(const OutpaintOptions& options) {
   }
 }
 
+std::vector<int> numbers_from(int first, int count) {
+  std::vector<int> numbers(static_cast<std::size_t>(count));
+  std::iota(numbers.begin(), numbers.end(), first);
+  return numbers;
+}
+
 /// The numbers of the `count` greatest scores, rising.
 std::vector<int> greatest(const std::vector<double>& scores, int count) {
-  std::vector<int> numbers(scores.size());
-  std::iota(numbers.begin(), numbers.end(), 0);
+  std::vector<int> numbers = numbers_from(0, static_cast<int>(scores.size()));
   std::stable_sort(numbers.begin(), numbers.end(), [&](int a, int b) {
     return scores[static_cast<std::size_t>(a)] > scores[static_cast<std::size_t>(b)];
   });
@@ -82,40 +55,43 @@ std::vector<int> greatest(const std::vector<double>& scores, int count) {
   return numbers;
 }
 
+/// About how long everything takes, for progress: milliseconds at the published widths.
+struct Work {
+  double encode, sample, decode, refine, refine_rest, score;  ///< of one completion
+  double whole;                                               ///< at most
+
+  Work(const OutpaintOptions& options, int samples, std::size_t missing, std::size_t scorers,
+       double pixels, double changed) {
+    constexpr double kView = 256 * 256;  // pixels that the times are of
+    encode = 11 * pixels / kView;
+    sample = 0.014 * static_cast<double>(missing);
+    decode = 12 * changed / kView;
+    refine = 220 * changed / kView;
+    refine_rest = changed < pixels ? 220 * pixels / kView : 0;
+    score = 27 * static_cast<double>(scorers) * pixels / kView;
+    const bool few = options.refine_best > 0 && options.refine_best < samples;
+    const bool screens = few && options.screen == OutpaintOptions::Screen::unrefined;
+    whole = encode + refine_rest + samples * (sample + (screens ? decode + score : 0)) +
+            (few ? options.refine_best : samples) * (decode + refine + score) + decode + refine;
+  }
+};
+
+bool all_finite(const nn::TensorView& image) {
+  const float* end = image.pixel(image.shape.pixels());
+  return std::all_of<const float*>(image.data, end, [](float x) { return std::isfinite(x); });
+}
+
 }  // namespace
-
-Scorer discriminator_scorer(const models::Discriminator& network) {
-  return {"discriminator", true, [&](const nn::TensorView& image, nn::Workspace& workspace) {
-            float score = 0;
-            network.score(image, &score, workspace);
-            return static_cast<double>(score);
-          }};
-}
-
-Scorer entropy_scorer(const models::Classifier& network) {
-  return {"entropy", false, [&](const nn::TensorView& image, nn::Workspace& workspace) {
-            const nn::Workspace::Scope scope(workspace);
-            const nn::TensorView normal = workspace.take(image.shape);
-            models::Classifier::normalise(image, normal);
-            std::vector<float> logits(static_cast<std::size_t>(network.classes()));
-            network.forward(normal, {logits.data(), {1, 1, 1, network.classes()}, logits.size()},
-                            workspace);
-            return entropy(logits);
-          }};
-}
 
 /// What is kept of a view while its completions pass by.
 struct Outpainter::View {
-  const cv::Mat1b& background;
   const OutpaintOptions& options;
   Outpainted& result;
-  cv::Size size;
-  cv::Rect missing;       ///< the background, in whole cells
-  cv::Rect changed = {};  ///< what it can change
-  std::vector<float> noise = {};
-  nn::Tensor combined = {};  ///< [1, h, w, 4]: the refiner's input
-  nn::Tensor image = {};     ///< the refined picture of the last completion
-  bool whole_done = false;
+  ViewPictures& pictures;
+  Work work;
+  Progress progress;
+  int samples;     ///< to be drawn at most
+  int shown = -1;  ///< the completion whose refined picture there is
   std::vector<Completion> completions = {};
   std::vector<Signal> signals = {};
 };
@@ -126,58 +102,77 @@ Outpainter::Outpainter(Networks networks) : networks_(std::move(networks)) {
   }
 }
 
-void Outpainter::decode(View& view, const Completion& completion) {
+std::vector<std::int32_t> Outpainter::encode(View& view, const nn::TensorView& projection) {
+  view.progress.at(0);
+  const Clock clock(view.result.report.encode_seconds);
+  std::vector<std::int32_t> codes(networks_.autoencoder->grid(projection.shape).pixels());
+  networks_.autoencoder->encode(projection, codes.data(), workspace_);
+  return codes;
+}
+
+void Outpainter::sample(View& view, Sampler& sampler, int count) {
+  const Clock clock(view.result.report.sample_seconds);
+  const double work = count * view.work.sample;
+  SampleOptions options;
+  options.temperature = view.options.temperature;
+  options.seed = view.options.seed;
+  options.view = view.options.view;
+  options.progress = [&](double done) {
+    view.progress.at(done * work);
+    return true;
+  };
+  std::vector<Completion> more = sampler.sample(view.result.report.drawn, count, options);
+  std::move(more.begin(), more.end(), std::back_inserter(view.completions));
+  view.result.report.drawn += count;
+  view.progress.done(work);
+}
+
+void Outpainter::decode(View& view, int number) {
   const Clock clock(view.result.report.decode_seconds);
-  const nn::Workspace::Scope scope(workspace_);
-  const cv::Rect part = grown(view.missing, kDecoderReach, view.size);
-  const int columns = view.size.width / kCell;
-  std::vector<std::int32_t> codes;
-  for (int y = part.y / kCell; y < part.br().y / kCell; ++y) {
-    for (int x = part.x / kCell; x < part.br().x / kCell; ++x) {
-      codes.push_back(completion.codes[static_cast<std::size_t>(y * columns + x)]);
-    }
-  }
-  const nn::TensorView decoded = workspace_.take({1, part.height, part.width, 3});
-  networks_.autoencoder->decode(codes.data(), decoded, workspace_);
-  for (int y = view.missing.y; y < view.missing.br().y; ++y) {
-    for (int x = view.missing.x; x < view.missing.br().x; ++x) {
-      if (!view.background(y, x)) continue;
-      std::copy_n(decoded.pixel(0, y - part.y, x - part.x), 3, view.combined.view().pixel(0, y, x));
-    }
-  }
+  view.pictures.decode(view.completions[static_cast<std::size_t>(number)].codes, workspace_);
+  view.progress.done(view.work.decode);
 }
 
-void Outpainter::refine(View& view) {
+void Outpainter::refine(View& view, int number) {
   const Clock clock(view.result.report.refine_seconds);
-  const nn::Workspace::Scope scope(workspace_);
-  const cv::Rect all(cv::Point(), view.size);
-  const cv::Rect out = view.whole_done ? view.changed : all;
-  const cv::Rect in = grown(out, kRefinerReach, view.size);
-  const nn::TensorView input = workspace_.take({1, in.height, in.width, 4});
-  const nn::TensorView output = workspace_.take({1, in.height, in.width, 3});
-  copy(view.combined, in.tl(), input, {}, in.size(), 4);
-  networks_.refiner->forward(input, view.noise.data(), output, workspace_);
-  copy(output, out.tl() - in.tl(), view.image, out.tl(), out.size(), 3);
-  view.whole_done = true;
+  view.pictures.refine(workspace_);
+  view.shown = number;
+  if (!all_finite(view.pictures.image())) {
+    throw Error("outpainter",
+                "the refined picture of completion " + std::to_string(number) +
+                    " holds a value that is not finite",
+                "finite numbers: the networks' weights overflow");
+  }
+  view.progress.done(view.work.refine);
 }
 
-void Outpainter::score(View& view, const nn::TensorView& image, const Completion& completion,
+void Outpainter::score(View& view, const nn::TensorView& image, int number,
                        std::vector<Signal>& signals) {
   const Clock clock(view.result.report.score_seconds);
   std::size_t signal = 0;
   for (const Scorer& scorer : networks_.scorers) {
-    signals[signal++].scores.push_back(scorer.score(image, workspace_));
+    const double score = scorer.score(image, workspace_);
+    if (std::isnan(score)) {
+      throw Error("outpainter",
+                  "the score of completion " + std::to_string(number) + " by " + scorer.name +
+                      " is not a number",
+                  "numbers");
+    }
+    signals[signal++].scores.push_back(score);
+    view.progress.done(view.work.score / static_cast<double>(networks_.scorers.size()));
   }
-  if (signal < signals.size()) signals[signal].scores.push_back(completion.log_likelihood);
+  if (signal < signals.size()) {
+    signals[signal].scores.push_back(
+        view.completions[static_cast<std::size_t>(number)].log_likelihood);
+  }
 }
 
 void Outpainter::refine_and_score(View& view, const std::vector<int>& numbers) {
   Outpainted& result = view.result;
   for (const int number : numbers) {
-    const Completion& completion = view.completions[static_cast<std::size_t>(number)];
-    decode(view, completion);
-    refine(view);
-    score(view, view.image, completion, view.signals);
+    decode(view, number);
+    refine(view, number);
+    score(view, view.pictures.image(), number, view.signals);
     result.refined.push_back(number);
   }
   result.totals = totals(view.signals);
@@ -188,117 +183,101 @@ void Outpainter::refine_and_score(View& view, const std::vector<int>& numbers) {
 std::vector<int> Outpainter::screened(View& view) {
   const int count = view.options.refine_best;
   if (count == 0 || static_cast<std::size_t>(count) >= view.completions.size()) {
-    std::vector<int> all(view.completions.size());
-    std::iota(all.begin(), all.end(), 0);
-    return all;
+    return numbers_from(0, static_cast<int>(view.completions.size()));
   }
-  std::vector<double> likelihoods;
+  if (view.options.screen == OutpaintOptions::Screen::likelihood) {
+    std::vector<double> likelihoods;
+    for (const Completion& completion : view.completions) {
+      likelihoods.push_back(completion.log_likelihood);
+    }
+    return greatest(likelihoods, count);
+  }
   std::vector<Signal> signals = view.signals;
-  nn::Tensor picture({1, view.size.height, view.size.width, 3});
-  for (const Completion& completion : view.completions) {
-    likelihoods.push_back(completion.log_likelihood);
-    if (view.options.screen == OutpaintOptions::Screen::likelihood) continue;
-    decode(view, completion);
-    copy(view.combined, {}, picture, {}, view.size, 3);
-    score(view, picture, completion, signals);
+  nn::Tensor picture(view.pictures.image().shape());
+  for (int number = 0; number < view.result.report.drawn; ++number) {
+    decode(view, number);
+    view.pictures.copy_unrefined(picture);
+    score(view, picture, number, signals);
   }
-  const bool cheapest = view.options.screen == OutpaintOptions::Screen::likelihood;
-  return greatest(cheapest ? likelihoods : totals(signals), count);
+  return greatest(totals(signals), count);
 }
 
-bool Outpainter::draw(View& view, Sampler& sampler) {
-  const OutpaintOptions& o = view.options;
-  const bool one_is_all = sampler.missing() == 0;  // then all are the same
-  const int most = one_is_all ? 1 : o.samples;
-  const int round = o.until_settled ? std::min(OutpaintOptions::kRound, most) : most;
-  SampleOptions options;
-  options.temperature = o.temperature;
-  options.seed = o.seed;
-  options.view = o.view;
-  int& drawn = view.result.report.drawn;
-  for (int leader = -1; drawn < most;) {
-    const int count = std::min(round, most - drawn);
-    if (o.progress) {
-      options.progress = [&](double done) { return o.progress((drawn + done * count) / most); };
-    }
-    {
-      const Clock clock(view.result.report.sample_seconds);
-      std::vector<Completion> more = sampler.sample(drawn, count, options);
-      if (more.empty()) return false;
-      std::move(more.begin(), more.end(), std::back_inserter(view.completions));
-    }
-    drawn += count;
-    if (!o.until_settled) break;
-    std::vector<int> numbers(static_cast<std::size_t>(count));
-    std::iota(numbers.begin(), numbers.end(), drawn - count);
-    refine_and_score(view, numbers);
+void Outpainter::draw(View& view, Sampler& sampler) {
+  if (!view.options.until_settled) {
+    sample(view, sampler, view.samples);
+    return refine_and_score(view, screened(view));
+  }
+  const int& drawn = view.result.report.drawn;
+  for (int leader = -1; drawn < view.samples;) {
+    const int count = std::min(OutpaintOptions::kRound, view.samples - drawn);
+    sample(view, sampler, count);
+    refine_and_score(view, numbers_from(drawn - count, count));
     if (view.result.best == leader && drawn >= 2 * (leader + 1)) break;
     leader = view.result.best;
   }
-  if (!o.until_settled) refine_and_score(view, screened(view));
-  return true;
 }
 
-std::vector<std::int32_t> Outpainter::encode(View& view, const nn::TensorView& projection) {
-  const Clock clock(view.result.report.encode_seconds);
-  std::vector<std::int32_t> codes(networks_.autoencoder->grid(projection.shape).pixels());
-  networks_.autoencoder->encode(projection, codes.data(), workspace_);
-  return codes;
-}
-
-void Outpainter::prepare(View& view, const nn::TensorView& projection) const {
-  view.changed = grown(view.missing, kRefinerReach, view.size);
-  view.result.report.changed = view.changed;
-  view.combined = nn::Tensor({1, view.size.height, view.size.width, 4});
-  copy(projection, {}, view.combined, {}, view.size, 3);
-  for (int y = 0; y < view.size.height; ++y) {
-    for (int x = 0; x < view.size.width; ++x) {
-      view.combined.view().pixel(0, y, x)[3] = view.background(y, x) ? 0.0f : 1.0f;
+Outpainted Outpainter::outpaint(const nn::TensorView& projection, const cv::Mat1b& background,
+                                const OutpaintOptions& options) {
+  const Order order = order_of(background, models::Autoencoder::kCell);
+  Outpainted result;
+  if (cv::countNonZero(background) == 0) {
+    result.image = nn::Tensor(projection.shape);
+    for (std::size_t i = 0; i < projection.shape.pixels(); ++i) {
+      std::copy_n(projection.pixel(i), 3, result.image.view().pixel(i));
     }
+    Progress(options.progress, 1).finish();
+    return result;
   }
-  const std::size_t count = networks_.refiner->noise_count();
-  for (std::uint32_t i = 0; view.noise.size() < count; ++i) {
-    const auto pair = random_normal(view.options.seed, {view.options.view, 0, i, kNoise});
-    view.noise.push_back(static_cast<float>(pair[0]));
-    if (view.noise.size() < count) view.noise.push_back(static_cast<float>(pair[1]));
-  }
+  ViewPictures pictures(*networks_.autoencoder, *networks_.refiner, projection, background,
+                        {options.seed, options.view}, options.region);
+  OutpaintReport& report = result.report;
+  report.changed = pictures.changed();
+  report.missing_cells = static_cast<std::size_t>(
+      std::count(order.missing.begin(), order.missing.end(), std::uint8_t{1}));
+  const int samples = report.missing_cells > 0 ? options.samples : 1;  // else all are the same
+  const Work work(options, samples, report.missing_cells, networks_.scorers.size(),
+                  background.size().area(), report.changed.area());
+  View view{options, result, pictures, work, Progress(options.progress, work.whole), samples};
   for (const Scorer& scorer : networks_.scorers) {
-    view.signals.push_back({{}, scorer.higher_is_better});
+    view.signals.push_back({{}, scorer.higher_is_better, scorer.name});
   }
-  if (view.options.likelihood || networks_.scorers.empty()) view.signals.push_back({{}, true});
+  if (options.likelihood || networks_.scorers.empty()) {
+    view.signals.push_back({{}, true, "log-likelihood"});
+  }
+  Sampler sampler(*networks_.pixel_cnn, order, encode(view, projection));
+  report.levels = sampler.levels();
+  view.progress.done(work.encode);
+  {
+    const Clock clock(report.refine_seconds);
+    pictures.refine_rest(workspace_);
+  }
+  view.progress.done(work.refine_rest);
+  draw(view, sampler);
+  if (view.shown != result.best) {
+    decode(view, result.best);
+    refine(view, result.best);
+  }
+  report.refined = static_cast<int>(result.refined.size());
+  for (Signal& signal : view.signals) result.scores.push_back(std::move(signal.scores));
+  result.codes = view.completions[static_cast<std::size_t>(result.best)].codes;
+  result.image = std::move(pictures.image());
+  view.progress.finish();
+  return result;
 }
 
 Outpainted Outpainter::run(const nn::TensorView& projection, const cv::Mat1b& background,
                            const OutpaintOptions& options) {
   check(options);
-  const nn::Shape& shape = projection.shape;
-  if (shape != nn::Shape{1, background.rows, background.cols, 3}) {
+  if (projection.shape != nn::Shape{1, background.rows, background.cols, 3}) {
     throw Error("outpainter", "a projection and a background that do not fit",
                 "one picture of three channels, one mask of its size");
   }
-  const Order order = order_of(background, kCell);
-  Outpainted result;
-  View view{background, options, result, background.size(), cells_around(background)};
-  view.image = nn::Tensor(shape);
-  copy(projection, {}, view.image, {}, view.size, 3);
-  if (view.missing.empty()) {
-    result.image = std::move(view.image);
-    return result;
+  try {
+    return outpaint(projection, background, options);
+  } catch (const Stopped&) {
+    return {};
   }
-  prepare(view, projection);
-  Sampler sampler(*networks_.pixel_cnn, order, encode(view, projection));
-  result.report.missing_cells = sampler.missing();
-  result.report.levels = sampler.levels();
-  if (!draw(view, sampler)) return result;
-  const Completion& best = view.completions[static_cast<std::size_t>(result.best)];
-  decode(view, best);
-  view.whole_done = false;
-  refine(view);
-  result.report.refined = static_cast<int>(result.refined.size());
-  for (Signal& signal : view.signals) result.scores.push_back(std::move(signal.scores));
-  result.codes = best.codes;
-  result.image = std::move(view.image);
-  return result;
 }
 
 }  // namespace ps::outpaint

@@ -4,30 +4,16 @@
 #include <cstdint>
 #include <functional>
 #include <opencv2/core.hpp>
-#include <string>
 #include <vector>
 
 #include "libps/models/autoencoder.h"
-#include "libps/models/classifier.h"
-#include "libps/models/discriminator.h"
 #include "libps/models/pixel_cnn.h"
 #include "libps/models/refiner.h"
 #include "libps/outpaint/sampler.h"
+#include "libps/outpaint/scorer.h"
 #include "libps/outpaint/selection.h"
 
 namespace ps::outpaint {
-
-/// @brief An opinion about a picture. The picture is [1, h, w, 3], RGB in [-1,1].
-struct Scorer {
-  std::string name;
-  bool higher_is_better = true;
-  std::function<double(const nn::TensorView& image, nn::Workspace& workspace)> score;
-};
-
-/// How real it looks (SPEC.md 9). The network must outlive the scorer, here and below.
-Scorer discriminator_scorer(const models::Discriminator& network);
-/// How certain a scene classifier is: the entropy of its softmax, lower is better.
-Scorer entropy_scorer(const models::Classifier& network);
 
 struct OutpaintOptions {
   int samples = 50;  ///< completions drawn; at most, when `until_settled`
@@ -47,7 +33,12 @@ struct OutpaintOptions {
     unrefined,   ///< the same scorers, on the picture before the refiner
   };
   Screen screen = Screen::unrefined;
-  /// Told what share of the sampling is done; returns false to stop.
+  /// Decode and refine for each completion only what it can change; false: whole pictures.
+  bool region = true;
+  /// Told what share of the view is done, from 0 to 1 and never falling, in all stages: one call at
+  /// a time, from any thread, at least once for every network that is run. Shares are estimates;
+  /// samples that need not be drawn make it leap to 1. When it returns false all stops, and what is
+  /// returned is empty; what it throws comes out of `run`. Either way `run` may be called again.
   std::function<bool(double done)> progress;
 };
 
@@ -61,8 +52,8 @@ struct OutpaintReport {
 };
 
 struct Outpainted {
-  nn::Tensor image;  ///< [1, h, w, 3]: the best one, refined; empty when it was stopped
-  int best = -1;     ///< its number
+  nn::Tensor image;  ///< [1, h, w, 3]: the best one, refined; without pixels when it was stopped
+  int best = -1;     ///< its number; -1 when it was stopped, or nothing is missing
   std::vector<std::int32_t> codes;
   std::vector<double> totals;  ///< by completion that was refined, in the order of `refined`
   std::vector<int> refined;    ///< their numbers
@@ -74,8 +65,11 @@ struct Outpainted {
 /// decode, combine, refine, keep the best.
 ///
 /// Completions differ in a part of the view alone, so only that part, grown by what the networks
-/// can reach, is decoded and refined for each; the rest once. All completions of a view share the
-/// refiner's noise. Not for two threads at once.
+/// can reach, is decoded and refined for each; the rest once. A picture and its scores are the same
+/// bytes whichever others are refined, or how many; and within 1e-4 of what the whole view gives.
+/// Scorers see the whole picture: the discriminator's instance norms average over all of it, so
+/// that every pixel a completion changes reaches every one of its outputs. All completions of a
+/// view share the refiner's noise. Not for two threads at once.
 class Outpainter {
  public:
   /// Networks must outlive this.
@@ -91,21 +85,23 @@ class Outpainter {
   /// of 8
   /// @param background  not 0 = missing (dilated, SPEC.md 4); of the same size
   /// @return where nothing is missing, the projection as it is
-  /// Throws ps::Error when shapes do not fit or options are out of range.
+  /// Throws ps::Error when shapes do not fit, options are out of range, or a logit, a refined
+  /// picture or a score (which, of which completion) is not a finite number.
   Outpainted run(const nn::TensorView& projection, const cv::Mat1b& background,
                  const OutpaintOptions& options);
 
  private:
   struct View;
-  void prepare(View& view, const nn::TensorView& projection) const;
+  Outpainted outpaint(const nn::TensorView& projection, const cv::Mat1b& background,
+                      const OutpaintOptions& options);
   std::vector<std::int32_t> encode(View& view, const nn::TensorView& projection);
-  bool draw(View& view, Sampler& sampler);
+  void draw(View& view, Sampler& sampler);
+  void sample(View& view, Sampler& sampler, int count);
   std::vector<int> screened(View& view);
-  void score(View& view, const nn::TensorView& image, const Completion& completion,
-             std::vector<Signal>& signals);
   void refine_and_score(View& view, const std::vector<int>& numbers);
-  void decode(View& view, const Completion& completion);
-  void refine(View& view);
+  void decode(View& view, int number);
+  void refine(View& view, int number);
+  void score(View& view, const nn::TensorView& image, int number, std::vector<Signal>& signals);
 
   Networks networks_;
   nn::Workspace workspace_;

@@ -31,8 +31,11 @@ std::vector<double> totals(const std::vector<Signal>& signals) {
                       std::to_string(signal.scores.size()) + " completions",
                   "one score for each");
     }
-    for (const double score : signal.scores) {
-      if (std::isnan(score)) throw Error("selection", "a score that is not a number", "numbers");
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!std::isnan(signal.scores[i])) continue;
+      throw Error("selection",
+                  "score " + std::to_string(i) + " of signal " + signal.name + " is not a number",
+                  "numbers");
     }
     const std::vector<int> rank = ranks(signal.scores);
     for (std::size_t i = 0; i < count; ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 namespace ps::outpaint {
@@ -10,6 +11,7 @@ namespace ps::outpaint {
 struct Signal {
   std::vector<double> scores;  ///< one for each completion
   bool higher_is_better = true;
+  std::string name = {};  ///< for messages
 };
 
 /// @return the place of every value in ascending order, from 0; of equal values the first comes
@@ -18,7 +20,8 @@ std::vector<int> ranks(const std::vector<double>& values);
 
 /// @brief The total of each completion (SPEC.md 9): the mean over signals of its rank, counted so
 /// that more is better. With the published two, discriminator and classifier entropy, this is their
-/// total. Throws ps::Error when there is no signal, they differ in length, or a score is NaN.
+/// total. Throws ps::Error when there is no signal, they differ in length, or a
+/// score is NaN (whose, and of which completion).
 std::vector<double> totals(const std::vector<Signal>& signals);
 
 /// @return the first of the greatest
