@@ -1,93 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "libps/outpaint/outpainter.h"
-
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <memory>
-
 #include "libps/core/parallel.h"
-#include "libps/core/random.h"
 #include "tests/io/support.h"
-#include "tests/support/random_weights.h"
+#include "tests/outpaint/outpainter_fixture.h"
+#include "tests/outpaint/support.h"
 
 namespace ps::outpaint {
 namespace {
-
-constexpr int kHeight = 128, kWidth = 192;
-
-/// Narrow networks by chance, and a view whose right side is missing.
-class OutpainterOfRandomWeights : public testing::Test {
- protected:
-  OutpainterOfRandomWeights() : projection_({1, kHeight, kWidth, 3}) {
-    background_(cv::Rect(151, 0, kWidth - 151, 64)) = 1;
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        for (int c = 0; c < 3; ++c) {
-          projection_.view().pixel(0, y, x)[c] =
-              background_(y, x)
-                  ? 0
-                  : std::sin(0.1f * static_cast<float>(x + 7 * c) + 0.05f * static_cast<float>(y));
-        }
-      }
-    }
-  }
-
-  Outpainter outpainter(std::vector<Scorer> scorers) const {
-    return Outpainter({&autoencoder_, &pixel_cnn_, &refiner_, std::move(scorers)});
-  }
-  /// Remembers every picture it is shown; scores them in turn.
-  Scorer recorder(std::vector<double> scores = {}) {
-    return {"recorder", true, [this, scores](const nn::TensorView& image, nn::Workspace&) {
-              nn::Tensor copy(image.shape);
-              std::copy_n(image.data, image.shape.pixels() * 3, copy.data());
-              seen_.push_back(std::move(copy));
-              return scores.empty() ? 0 : scores[(seen_.size() - 1) % scores.size()];
-            }};
-  }
-
-  /// The whole view, network after network.
-  nn::Tensor refined_whole(const std::vector<std::int32_t>& codes, const OutpaintOptions& options) {
-    nn::Tensor decoded({1, kHeight, kWidth, 3}), input({1, kHeight, kWidth, 4}),
-        out(decoded.shape());
-    autoencoder_.decode(codes.data(), decoded, workspace_);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
-        const nn::TensorView& from = background_(y, x) ? decoded.view() : projection_.view();
-        std::copy_n(from.pixel(0, y, x), 3, input.view().pixel(0, y, x));
-        input.view().pixel(0, y, x)[3] = background_(y, x) ? 0 : 1;
-      }
-    }
-    std::vector<float> noise;
-    for (std::uint32_t i = 0; noise.size() < refiner_.noise_count(); ++i) {
-      for (const double n : random_normal(options.seed, {options.view, 0, i, 1})) {
-        noise.push_back(static_cast<float>(n));
-      }
-    }
-    refiner_.forward(input, noise.data(), out, workspace_);
-    return out;
-  }
-
-  models::Autoencoder autoencoder_{models::random_autoencoder(16, 8, 8, 24)};
-  models::PixelCnn pixel_cnn_{models::random_pixel_cnn(11, 24)};
-  models::Refiner refiner_{models::random_refiner(8)};
-  models::Discriminator discriminator_{models::random_discriminator(8)};
-  models::Classifier classifier_{models::random_classifier(8, 10)};
-  nn::Tensor projection_;
-  cv::Mat1b background_ = cv::Mat1b::zeros(kHeight, kWidth);
-  std::vector<nn::Tensor> seen_;
-  nn::Workspace workspace_;
-};
-
-double worst_difference(const nn::Tensor& a, const nn::Tensor& b) {
-  EXPECT_EQ(a.shape(), b.shape());
-  double worst = 0;
-  for (std::size_t i = 0; i < a.shape().pixels() * 3; ++i) {
-    const double difference = std::abs(a.data()[i] - b.data()[i]);
-    if (!(difference <= worst)) worst = difference;  // also when it is NaN
-  }
-  return worst;
-}
 
 TEST_F(OutpainterOfRandomWeights, a_part_of_the_view_gives_what_the_whole_view_gives) {
   OutpaintOptions options;
@@ -212,12 +130,85 @@ TEST_F(OutpainterOfRandomWeights, the_same_bytes_for_any_number_of_threads) {
   set_threads(0);
 }
 
-TEST_F(OutpainterOfRandomWeights, stops_when_it_is_told_to) {
+/// What each completion that was refined looks like to every signal, whatever else was refined.
+TEST_F(OutpainterOfRandomWeights, scores_are_the_same_bytes_whichever_others_are_refined) {
+  Outpainter painter =
+      outpainter({discriminator_scorer(discriminator_), entropy_scorer(classifier_), recorder()});
   OutpaintOptions options;
-  options.progress = [](double) { return false; };
-  const Outpainted result = outpainter({}).run(projection_, background_, options);
-  EXPECT_EQ(result.best, -1);
-  EXPECT_EQ(result.image.shape().pixels(), 0u);
+  options.samples = 9;
+  options.likelihood = true;
+  const Outpainted all = painter.run(projection_, background_, options);
+  const std::vector<nn::Tensor> pictures = std::move(seen_);
+  const auto expect_the_same = [&] {
+    seen_.clear();
+    const Outpainted some = painter.run(projection_, background_, options);
+    const std::size_t unrefined = seen_.size() - some.refined.size();  // those come first
+    for (std::size_t i = 0; i < some.refined.size(); ++i) {
+      const auto number = static_cast<std::size_t>(some.refined[i]);
+      for (std::size_t signal = 0; signal < all.scores.size(); ++signal) {
+        EXPECT_EQ(some.scores[signal][i], all.scores[signal][number]) << number;
+      }
+      EXPECT_EQ(worst_difference(seen_[unrefined + i], pictures[number]), 0) << number;
+      if (some.refined[i] == some.best) {
+        EXPECT_EQ(worst_difference(some.image, pictures[number]), 0);
+      }
+    }
+    return some.refined;
+  };
+  EXPECT_EQ(expect_the_same().size(), 9u);
+  options.refine_best = 3;
+  EXPECT_EQ(expect_the_same().size(), 3u);
+  options.screen = OutpaintOptions::Screen::likelihood;
+  EXPECT_GT(expect_the_same().front(), -1);
+  options.refine_best = 1;
+  EXPECT_EQ(expect_the_same().size(), 1u);
+  options.refine_best = 0;
+  options.samples = 1;
+  EXPECT_EQ(expect_the_same(), std::vector<int>{0});
+  options.samples = 9;
+  options.until_settled = true;
+  EXPECT_GE(expect_the_same().size(), 8u);
+}
+
+TEST_F(OutpainterOfRandomWeights, with_the_region_off_the_same_comes_of_whole_pictures) {
+  OutpaintOptions options;
+  options.samples = 3;
+  Outpainter painter = outpainter({recorder({0, 2, 1})});
+  const Outpainted part = painter.run(projection_, background_, options);
+  options.region = false;
+  const Outpainted whole = painter.run(projection_, background_, options);
+  EXPECT_EQ(whole.report.changed, cv::Rect(0, 0, kWidth, kHeight));
+  ASSERT_EQ(seen_.size(), 6u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_LE(worst_difference(seen_[i], seen_[3 + i]), 1e-4);
+  }
+  EXPECT_EQ(part.codes, whole.codes);
+  EXPECT_LE(worst_difference(whole.image, refined_whole(whole.codes, options)), 0);
+}
+
+TEST_F(OutpainterOfRandomWeights, everything_may_be_missing) {
+  background_ = 1;
+  std::fill_n(projection_.data(), projection_.shape().pixels() * 3, 0.0f);
+  OutpaintOptions options;
+  options.samples = 2;
+  const Outpainted result =
+      outpainter({discriminator_scorer(discriminator_)}).run(projection_, background_, options);
+  EXPECT_EQ(result.report.missing_cells, static_cast<std::size_t>(kHeight / 8 * kWidth / 8));
+  EXPECT_LE(worst_difference(result.image, refined_whole(result.codes, options)), 0);
+}
+
+TEST_F(OutpainterOfRandomWeights, values_that_are_not_finite_are_errors_that_name_the_completion) {
+  OutpaintOptions options;
+  options.samples = 4;
+  Outpainter painter =
+      outpainter({discriminator_scorer(discriminator_), recorder({0, 1, std::nan(""), 0})});
+  const std::string score = error_of([&] { painter.run(projection_, background_, options); });
+  EXPECT_TRUE(has(score, "score of completion 2 by recorder is not a number")) << score;
+  const models::Refiner overflowing(
+      with_all(models::random_refiner(8), "projector.eblocks.0.ch_a.2.weight", 1e38f));
+  Outpainter other({&autoencoder_, &pixel_cnn_, &overflowing, {}});
+  const std::string picture = error_of([&] { other.run(projection_, background_, options); });
+  EXPECT_TRUE(has(picture, "picture of completion 0")) << picture;
 }
 
 TEST_F(OutpainterOfRandomWeights, errors_say_what_is_wrong) {

@@ -53,7 +53,10 @@ TEST(Selection, entropy_is_known_for_even_and_for_certain) {
 TEST(Selection, errors_say_what_is_wrong) {
   EXPECT_TRUE(has(error_of([] { totals({}); }), "at least one"));
   EXPECT_TRUE(has(error_of([] { totals({{{1, 2}, true}, {{1}, true}}); }), "2 and 1"));
-  EXPECT_TRUE(has(error_of([] { totals({{{std::nan("")}, true}}); }), "not a number"));
+  EXPECT_TRUE(has(error_of([] {
+                    totals({{{1, 2}, true, "a"}, {{1, std::nan("")}, true, "b"}});
+                  }),
+                  "score 1 of signal b is not a number"));
 }
 
 }  // namespace
