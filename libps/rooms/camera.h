@@ -19,10 +19,10 @@ struct Camera {
 
 struct CameraOptions {
   int width = 256, height = 256;
-  float min_fov = 35, max_fov = 95;          ///< degrees, horizontal
+  float min_fov = 35, max_fov = 95;            ///< degrees, horizontal
   float min_height = 0.3f, max_height = 2.2f;  ///< metres above the floor; mostly 1 to 1.7
-  float max_pitch = 40;                      ///< degrees; mostly small
-  float max_roll = 6;                        ///< degrees; mostly small
+  float max_pitch = 40;                        ///< degrees; mostly small
+  float max_roll = 6;                          ///< degrees; mostly small
 };
 
 /// @brief A camera where somebody would take a photo: in free space, looking at something that is

@@ -24,7 +24,9 @@ class Dice {
   }
   float unit() { return static_cast<float>(bits() >> 8) * 0x1p-24f; }
   float range(float low, float high) { return low + (high - low) * unit(); }
-  int below(int count) { return static_cast<int>(static_cast<std::uint64_t>(bits()) * count >> 32); }
+  int below(int count) {
+    return static_cast<int>(static_cast<std::uint64_t>(bits()) * count >> 32);
+  }
   int whole(int low, int high) { return low + below(high - low + 1); }  ///< both may come
   bool chance(float p) { return unit() < p; }
   float sign() { return chance(0.5f) ? 1.f : -1.f; }
@@ -34,7 +36,9 @@ class Dice {
   T pick(std::initializer_list<T> values) {
     return values.begin()[below(static_cast<int>(values.size()))];
   }
-  Dice child() { return Dice(seed_ ^ (static_cast<std::uint64_t>(bits()) << 32 | bits()), stream_); }
+  Dice child() {
+    return Dice(seed_ ^ (static_cast<std::uint64_t>(bits()) << 32 | bits()), stream_);
+  }
 
  private:
   std::uint64_t seed_;

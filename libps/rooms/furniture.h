@@ -24,7 +24,7 @@ class Furniture {
   /// @return how many models can be placed
   std::size_t size() const;
 
-  const FurnitureStore& store() const { return *store_; }
+  std::shared_ptr<const FurnitureStore> share() const { return store_; }
 
  private:
   std::shared_ptr<const FurnitureStore> store_;

@@ -24,10 +24,10 @@ struct ModelMaterial {
 /// @brief A piece of furniture: triangles in metres, x right, y up, z towards whoever looks at its
 /// front; its base stands on y = 0, centred on the origin in x and z.
 struct Model {
-  std::string name;                       ///< as its catalogue calls it
-  std::string category;                   ///< "Bedroom", "Kitchen", ... as its catalogue says
-  float elevation = 0;                    ///< metres above the floor its base wants to be (lamps, shelves)
-  bool door_or_window = false;            ///< belongs into a wall, not into a room
+  std::string name;             ///< as its catalogue calls it
+  std::string category;         ///< "Bedroom", "Kitchen", ... as its catalogue says
+  float elevation = 0;          ///< metres above the floor its base wants to be (lamps, shelves)
+  bool door_or_window = false;  ///< belongs into a wall, not into a room
   std::vector<std::array<float, 3>> positions;
   std::vector<std::array<float, 2>> uvs;  ///< empty, or one for each position
   struct Triangle {

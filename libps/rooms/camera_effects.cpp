@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/rooms/camera_effects.h"
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "libps/core/error.h"
+#include "libps/rooms/dice.h"
+
+namespace ps::rooms {
+namespace {
+
+float& channel(Shot& s, int x, int y, int c) {
+  return s.color[(static_cast<std::size_t>(y) * s.width + x) * 3 + c];
+}
+
+/// Exposure, colour of the light, corners, contrast, saturation.
+void tone(Shot& s, Dice& d, const EffectOptions& o) {
+  const float gain = std::exp2(d.normal() * 0.5f * o.exposure);
+  const float red = 1 + 0.5f * o.white_balance * d.normal(),
+              blue = 1 + 0.5f * o.white_balance * d.normal();
+  const float corner = d.chance(0.6f) ? o.vignetting * d.unit() : 0;
+  const float gamma = std::exp2(0.5f * o.contrast * d.normal()),
+              curve = o.contrast * d.range(-0.3f, 1);
+  const float saturation = 1 + o.saturation * d.range(-1, 1);
+  const Vec gains{gain * red, gain, gain * blue};
+  const float mx = 0.5f * static_cast<float>(s.width - 1),
+              my = 0.5f * static_cast<float>(s.height - 1);
+  for (int y = 0; y < s.height; ++y) {
+    for (int x = 0; x < s.width; ++x) {
+      const float a = (static_cast<float>(x) - mx) / (mx + 1),
+                  b = (static_cast<float>(y) - my) / (my + 1);
+      const float light = 1 - corner * 0.5f * (a * a + b * b);
+      float* p = &channel(s, x, y, 0);
+      // Gains act on light; a power of 2.2 is near enough to sRGB.
+      float v[3] = {p[0], p[1], p[2]};
+      const float g[3] = {gains.x, gains.y, gains.z};
+      for (int c = 0; c < 3; ++c) v[c] = std::min(1.f, v[c] * std::pow(g[c] * light, 1 / 2.2f));
+      const float grey = 0.3f * v[0] + 0.59f * v[1] + 0.11f * v[2];
+      for (int c = 0; c < 3; ++c) {
+        float q = clamp01(grey + (v[c] - grey) * saturation);
+        q = gamma == 1 ? q : std::pow(q, gamma);
+        p[c] = mix(q, q * q * (3 - 2 * q), curve);
+      }
+    }
+  }
+}
+
+/// A small kernel along each axis: sigma pixels, in x and in y.
+std::vector<float> blurred(const Shot& s, float sigma_x, float sigma_y) {
+  std::vector<float> image = s.color, out = image;
+  for (const bool along_x : {true, false}) {
+    const float sigma = along_x ? sigma_x : sigma_y;
+    if (sigma < 0.2f) continue;
+    const int reach = std::min(4, static_cast<int>(2.5f * sigma + 1));
+    float weight[9], total = 0;
+    for (int k = -reach; k <= reach; ++k) {
+      const float q = static_cast<float>(k) / sigma;
+      total += weight[k + 4] = std::exp(-0.5f * q * q);
+    }
+    for (int y = 0; y < s.height; ++y) {
+      for (int x = 0; x < s.width; ++x) {
+        float sum[3] = {0, 0, 0};
+        for (int k = -reach; k <= reach; ++k) {
+          const int i = along_x ? std::clamp(x + k, 0, s.width - 1) : x;
+          const int j = along_x ? y : std::clamp(y + k, 0, s.height - 1);
+          const float* p = &image[(static_cast<std::size_t>(j) * s.width + i) * 3];
+          for (int c = 0; c < 3; ++c) sum[c] += weight[k + 4] * p[c];
+        }
+        for (int c = 0; c < 3; ++c)
+          out[(static_cast<std::size_t>(y) * s.width + x) * 3 + c] = sum[c] / total;
+      }
+    }
+    image = out;
+  }
+  return image;
+}
+
+void focus(Shot& s, Dice& d, const EffectOptions& o) {
+  if (o.blur > 0 && d.chance(0.6f)) {
+    const float sigma = o.blur * d.unit() * d.unit() * 1.3f;
+    const float motion = d.chance(0.25f) ? o.blur * d.range(0.5f, 2) : 0;
+    const bool across = d.chance(0.7f);
+    s.color = blurred(s, sigma + (across ? motion : 0), sigma + (across ? 0 : motion));
+  }
+  if (o.sharpening > 0 && d.chance(0.6f)) {
+    const float amount = o.sharpening * d.unit();
+    const std::vector<float> soft = blurred(s, 1, 1);
+    for (std::size_t i = 0; i < soft.size(); ++i)
+      s.color[i] = clamp01(s.color[i] + amount * (s.color[i] - soft[i]));
+  }
+}
+
+void grain(Shot& s, Dice& d, const EffectOptions& o) {
+  if (o.noise <= 0 || d.chance(0.2f)) return;
+  const float sigma = o.noise * d.unit() * d.unit(), colored = d.unit();
+  for (std::size_t i = 0; i < s.color.size(); i += 3) {
+    const float shared = d.normal();
+    for (int c = 0; c < 3; ++c) {
+      const float light = s.color[i + c];
+      const float n = mix(shared, d.normal(), colored);
+      s.color[i + c] = clamp01(light + sigma * n * (1.2f - 0.8f * light));
+    }
+  }
+}
+
+using Block = std::array<float, 64>;
+
+/// The 8x8 cosine transform, rows then columns; `back` undoes it.
+void transform(Block& block, bool back) {
+  static const Block basis = [] {
+    Block b;
+    for (int k = 0; k < 8; ++k) {
+      for (int i = 0; i < 8; ++i) {
+        b[k * 8 + i] = (k == 0 ? std::sqrt(0.125f) : 0.5f) *
+                       static_cast<float>(std::cos((2 * i + 1) * k * 3.14159265358979 / 16));
+      }
+    }
+    return b;
+  }();
+  for (int pass = 0; pass < 2; ++pass) {
+    Block out;
+    for (int r = 0; r < 8; ++r) {
+      for (int k = 0; k < 8; ++k) {
+        float sum = 0;
+        for (int i = 0; i < 8; ++i)
+          sum += block[r * 8 + i] * (back ? basis[i * 8 + k] : basis[k * 8 + i]);
+        out[k * 8 + r] = sum;  // transposed: the second pass does the columns
+      }
+    }
+    block = out;
+  }
+}
+
+/// Quantises 8x8 blocks of luma and colour as JPEG does, finer frequencies coarser.
+void quantise(Shot& s, Dice& d, const EffectOptions& o) {
+  if (o.jpeg <= 0 || d.chance(0.3f)) return;
+  const float coarse = o.jpeg * d.unit() * 0.02f;
+  for (int y0 = 0; y0 < s.height; y0 += 8) {
+    for (int x0 = 0; x0 < s.width; x0 += 8) {
+      Block planes[3];
+      for (int i = 0; i < 64; ++i) {
+        const float* p =
+            &channel(s, std::min(x0 + i % 8, s.width - 1), std::min(y0 + i / 8, s.height - 1), 0);
+        const float luma = 0.299f * p[0] + 0.587f * p[1] + 0.114f * p[2];
+        planes[0][i] = luma;
+        planes[1][i] = p[2] - luma;
+        planes[2][i] = p[0] - luma;
+      }
+      for (int c = 0; c < 3; ++c) {
+        transform(planes[c], false);
+        for (int i = 0; i < 64; ++i) {
+          const float step =
+              coarse * (c == 0 ? 1 : 2) * (1 + 0.6f * static_cast<float>(i % 8 + i / 8)) + 1e-5f;
+          planes[c][i] = std::nearbyint(planes[c][i] / step) * step;
+        }
+        transform(planes[c], true);
+      }
+      for (int i = 0; i < 64; ++i) {
+        const int x = x0 + i % 8, y = y0 + i / 8;
+        if (x >= s.width || y >= s.height) continue;
+        float* p = &channel(s, x, y, 0);
+        const float luma = planes[0][i], blue = planes[1][i] + luma, red = planes[2][i] + luma;
+        p[0] = clamp01(red);
+        p[1] = clamp01((luma - 0.299f * red - 0.114f * blue) / 0.587f);
+        p[2] = clamp01(blue);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void degrade(Shot& shot, std::uint64_t seed, const EffectOptions& options) {
+  if (shot.width < 0 || shot.height < 0 ||
+      shot.color.size() != static_cast<std::size_t>(shot.width) * shot.height * 3) {
+    throw Error("degrade", std::to_string(shot.color.size()) + " colours",
+                "three for each of " + std::to_string(shot.width) + "x" +
+                    std::to_string(shot.height) + " pixels");
+  }
+  Dice d(seed, 4);
+  tone(shot, d, options);
+  focus(shot, d, options);
+  grain(shot, d, options);
+  quantise(shot, d, options);
+}
+
+}  // namespace ps::rooms

@@ -1,0 +1,463 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which things stand in a space, and where.
+#include "libps/rooms/pieces.h"
+
+namespace ps::rooms {
+namespace {
+
+Frame at(float x, float y, float z) { return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {x, y, z}}; }
+
+Rect bounds_of(const Frame& f, float width, float depth) {
+  Rect r{1e9f, 1e9f, -1e9f, -1e9f};
+  for (const float sx : {-0.5f, 0.5f}) {
+    for (const float sz : {-0.5f, 0.5f}) {
+      const Vec p = f.point({sx * width, 0, sz * depth});
+      r = {std::min(r.x0, p.x), std::min(r.z0, p.z), std::max(r.x1, p.x), std::max(r.z1, p.z)};
+    }
+  }
+  return r;
+}
+
+class Furnisher {
+ public:
+  Furnisher(Set& set, const Plan& plan) : set_(set), plan_(plan), d_(set.dice.child()) {
+    for (const Edge& e : plan.edges) {
+      for (const Opening& o : e.openings) {
+        if (o.kind == Opening::window) continue;
+        const Frame f = e.frame * at((o.from + o.to) / 2, 0, 0.45f);
+        set_.footprints.push_back({bounds_of(f, o.to - o.from, 0.9f), 0, 2});
+      }
+    }
+  }
+
+  void furnish(bool main) {
+    switch (plan_.kind) {
+      case RoomKind::bedroom:
+        wall(bed(set_, d_));
+        some(0, 2, [&] { wall(cupboard(set_, d_, 0.4f, 0.65f)); });
+        some(0, 2, [&] { wall(cupboard(set_, d_, 1.7f, 2.3f)); });
+        maybe(0.5f, [&] { wall(shelf(set_, d_)); });
+        maybe(0.5f, [&] { workplace(true); });
+        maybe(0.4f, [&] { wall(cupboard(set_, d_, 0.6f, 1.2f)); });
+        maybe(0.3f, [&] { loose(sofa(set_, d_, true)); });
+        break;
+      case RoomKind::living_room:
+        wall(sofa(set_, d_, false));
+        maybe(0.5f, [&] { loose(sofa(set_, d_, false)); });
+        some(0, 2, [&] { loose(sofa(set_, d_, true)); });
+        maybe(0.8f, [&] { loose(table(set_, d_, true)); });
+        some(0, 3, [&] { wall(shelf(set_, d_)); });
+        some(0, 2, [&] { wall(cupboard(set_, d_, 0.35f, 1.1f)); });
+        maybe(0.4f, [&] { dining(); });
+        maybe(0.6f, [&] { hang(wall_screen(set_, d_), 0.7f, 1.2f); });
+        break;
+      case RoomKind::kitchen:
+        wall(kitchen_row(set_, d_, d_.range(1.6f, 3.8f)));
+        maybe(0.5f, [&] { wall(kitchen_row(set_, d_, d_.range(1, 2.5f))); });
+        wall(fridge(set_, d_));
+        maybe(0.8f, [&] { dining(); });
+        maybe(0.3f, [&] { loose(counter(set_, d_)); });
+        some(0, 2, [&] { wall(cupboard(set_, d_, 0.8f, 2.1f)); });
+        break;
+      case RoomKind::office:
+        offices();
+        some(0, 3, [&] { wall(shelf(set_, d_)); });
+        some(0, 3, [&] { wall(cupboard(set_, d_, 0.7f, 2)); });
+        maybe(0.5f, [&] { hang(wall_board(set_, d_), 0.8f, 1.1f); });
+        maybe(0.25f, [&] { dining(); });
+        break;
+      case RoomKind::bathroom:
+        wall(basin(set_, d_));
+        wall(toilet(set_, d_));
+        maybe(0.6f, [&] { wall(bathtub(set_, d_)); });
+        hang(wall_mirror(set_, d_), 1, 1.3f);
+        maybe(0.5f, [&] { wall(cupboard(set_, d_, 0.6f, 1.9f)); });
+        break;
+      case RoomKind::corridor:
+        some(0, 4, [&] { wall(cupboard(set_, d_, 0.7f, 2)); });
+        some(0, 2, [&] { wall(shelf(set_, d_)); });
+        some(0, 3, [&] { wall(chair(set_, d_)); });
+        maybe(0.4f, [&] { hang(coat_rack(set_, d_), 0.5f, 0.8f); });
+        break;
+      case RoomKind::hall:
+        some(0, 3, [&] { dining(); });
+        some(0, 3, [&] { loose(sofa(set_, d_, d_.chance(0.4f))); });
+        some(0, 2, [&] { loose(counter(set_, d_)); });
+        some(0, 4, [&] { wall(cupboard(set_, d_, 0.7f, 2)); });
+        some(0, 3, [&] { column(); });
+        some(0, 3, [&] { loose(plant(set_, d_)); });
+        break;
+      case RoomKind::storage:
+        some(2, 7, [&] { wall(shelf(set_, d_)); });
+        some(0, 3, [&] { wall(cupboard(set_, d_, 0.7f, 2)); });
+        some(1, 9, [&] { loose(box_pile(set_, d_)); });
+        maybe(0.6f, [&] { loose(stepladder(set_, d_)); });
+        break;
+    }
+    common(main ? 1.f : 0.5f);
+  }
+
+ private:
+  template <typename F>
+  void some(int low, int high, F f) {
+    const int n = d_.whole(low, high);
+    for (int i = 0; i < n; ++i) f();
+  }
+  template <typename F>
+  void maybe(float p, F f) {
+    if (d_.chance(p)) f();
+  }
+
+  bool free(const Rect& r, float low, float high) const {
+    bool inside = false;
+    for (const Rect& q : plan_.rects) {
+      inside |= r.x0 >= q.x0 && r.x1 <= q.x1 && r.z0 >= q.z0 && r.z1 <= q.z1;
+    }
+    if (!inside) return false;
+    for (const Footprint& f : set_.footprints) {
+      if (f.low < high && f.high > low && f.rect.meets(r)) return false;
+    }
+    return true;
+  }
+
+  /// A real model in the place of a piece about as large, if there are any and the dice say so.
+  bool model_instead(const Frame& f, const Vec& size) {
+    if (!set_.scene.furniture || !d_.chance(0.5f)) return false;
+    return place_model(f, size);
+  }
+
+  bool place_model(const Frame& f, const Vec& size) {
+    const auto& models = set_.scene.furniture->models;
+    if (models.empty()) return false;
+    for (int attempt = 0; attempt < 25; ++attempt) {
+      const StoredModel& m = models[d_.below(static_cast<int>(models.size()))];
+      const Vec s = m.high - m.low;
+      if (m.door_or_window || m.elevation > 0.05f) continue;
+      if (s.x > size.x * 1.15f || s.z > size.z * 1.15f || s.y > std::max(size.y * 1.4f, 0.5f))
+        continue;
+      if (s.x < size.x * 0.55f || s.z < size.z * 0.45f || s.y < size.y * 0.3f) continue;
+      add_model(m, f * at(0, -m.low.y, size.z < s.z ? 0 : (s.z - size.z) / 2));
+      return true;
+    }
+    return false;
+  }
+
+  void add_model(const StoredModel& m, const Frame& f) {
+    Part p;
+    p.mesh = &m.mesh;
+    p.tree = &m.tree;
+    p.materials = &m.materials;
+    p.pictures = &m.pictures;
+    p.placed = true;
+    p.world = f;
+    p.low = {1e9f, 1e9f, 1e9f};
+    p.high = -p.low;
+    for (int c = 0; c < 8; ++c) {
+      const Vec q = f.point(
+          {c & 1 ? m.high.x : m.low.x, c & 2 ? m.high.y : m.low.y, c & 4 ? m.high.z : m.low.z});
+      p.low = min(p.low, q);
+      p.high = max(p.high, q);
+    }
+    set_.scene.parts.push_back(p);
+  }
+
+  void draw(const Piece& p, const Frame& f) {
+    stand(bounds_of(f, p.size.x, p.size.z), p.size.y);
+    if (!model_instead(f, p.size)) p.draw(set_, set_.solid(f));
+  }
+
+  void stand(const Rect& r, float height) {
+    set_.footprints.push_back({r, 0, height});
+    set_.scene.things.push_back({Vec{r.x0, 0, r.z0}, Vec{r.x1, height, r.z1}});
+  }
+
+  /// With its back against a wall.
+  bool wall(const Piece& p) {
+    for (int attempt = 0; attempt < 14; ++attempt) {
+      const Edge& e = plan_.edges[d_.below(static_cast<int>(plan_.edges.size()))];
+      if (e.length < p.size.x + 0.05f) continue;
+      float x = d_.range(p.size.x / 2, e.length - p.size.x / 2);
+      if (d_.chance(0.35f))
+        x = d_.chance(0.5f) ? p.size.x / 2 + 0.02f : e.length - p.size.x / 2 - 0.02f;
+      if (covers(e, x, p.size.x, 0, p.size.y)) continue;
+      const Frame f =
+          e.frame * at(x, 0, p.size.z / 2 + (d_.chance(0.8f) ? 0.02f : d_.range(0.02f, 0.15f)));
+      if (!free(bounds_of(f, p.size.x, p.size.z - 0.02f), 0, p.size.y)) continue;
+      draw(p, f);
+      return true;
+    }
+    return false;
+  }
+
+  bool covers(const Edge& e, float x, float width, float low, float high) const {
+    for (const Opening& o : e.openings) {
+      if (x + width / 2 < o.from - 0.05f || x - width / 2 > o.to + 0.05f) continue;
+      if (high > o.bottom && low < o.top) return true;
+    }
+    return false;
+  }
+
+  /// Anywhere on the floor.
+  bool loose(const Piece& p) {
+    for (int attempt = 0; attempt < 10; ++attempt) {
+      const Rect& r = plan_.rects[d_.below(static_cast<int>(plan_.rects.size()))];
+      float turn = static_cast<float>(d_.below(4)) * 1.5707963f;
+      if (d_.chance(0.4f)) turn += d_.range(-0.5f, 0.5f);
+      const Frame f = turned(turn, {d_.range(r.x0, r.x1), 0, d_.range(r.z0, r.z1)});
+      if (!free(bounds_of(f, p.size.x, p.size.z), 0, p.size.y)) continue;
+      draw(p, f);
+      return true;
+    }
+    return false;
+  }
+
+  /// On a wall, its lower edge between these heights.
+  bool hang(const Piece& p, float low, float high) {
+    for (int attempt = 0; attempt < 8; ++attempt) {
+      const Edge& e = plan_.edges[d_.below(static_cast<int>(plan_.edges.size()))];
+      if (e.length < p.size.x + 0.1f) continue;
+      const float x = d_.range(p.size.x / 2 + 0.03f, e.length - p.size.x / 2 - 0.03f),
+                  y = d_.range(low, high);
+      if (y + p.size.y > plan_.height || covers(e, x, p.size.x + 0.15f, y, y + p.size.y)) continue;
+      const Frame f = e.frame * at(x, y, 0.001f);
+      if (!free(bounds_of(f * at(0, 0, p.size.z / 2 + 0.01f), p.size.x, p.size.z), y, y + p.size.y))
+        continue;
+      set_.footprints.push_back({bounds_of(f, p.size.x, 2 * p.size.z), y, y + p.size.y});
+      p.draw(set_, set_.solid(f));
+      return true;
+    }
+    return false;
+  }
+
+  /// A table with chairs around it, at most tucked under.
+  void dining() {
+    const bool round = d_.chance(0.3f);
+    const Piece t = round ? round_table(set_, d_) : table(set_, d_, false);
+    const float margin = 1.1f;
+    for (int attempt = 0; attempt < 14; ++attempt) {
+      const Rect& r = plan_.rects[d_.below(static_cast<int>(plan_.rects.size()))];
+      const float turn = static_cast<float>(d_.below(2)) * 1.5707963f +
+                         (d_.chance(0.2f) ? d_.range(-0.3f, 0.3f) : 0);
+      const Frame f = turned(turn, {d_.range(r.x0, r.x1), 0, d_.range(r.z0, r.z1)});
+      const float around = attempt < 8 ? margin : 0.2f;
+      if (!free(bounds_of(f, t.size.x + around, t.size.z + around), 0, 1)) continue;
+      draw(t, f);
+      const Piece seat = d_.chance(0.1f) ? stool(set_, d_) : chair(set_, d_);
+      const int sides = std::max(1, static_cast<int>(t.size.x / 0.65f));
+      const float full = d_.range(0.4f, 1);
+      for (int i = 0; i < sides; ++i) {
+        const float x =
+            t.size.x * ((static_cast<float>(i) + 0.5f) / static_cast<float>(sides) - 0.5f);
+        for (const float s : {-1.f, 1.f})
+          seat_at(f, seat, {x, 0, s * t.size.z / 2}, s > 0 ? 3.1415927f : 0, full);
+      }
+      if (t.size.x > 0.9f || round) {
+        for (const float s : {-1.f, 1.f})
+          seat_at(f, seat, {s * t.size.x / 2, 0, 0}, s > 0 ? -1.5707963f : 1.5707963f, full * 0.7f);
+      }
+      return;
+    }
+  }
+
+  /// A seat that faces `turn`, standing back from the edge of a table.
+  void seat_at(const Frame& table, const Piece& seat, Vec edge, float turn, float chance) {
+    if (!d_.chance(chance)) return;
+    const float back = d_.chance(0.7f) ? d_.range(-0.05f, 0.2f) : d_.range(0.2f, 0.6f);
+    const Frame f = table * turned(turn, edge) * at(0, 0, -back - seat.size.z * 0.35f) *
+                    turned(d_.chance(0.8f) ? d_.normal() * 0.12f : d_.range(-1, 1));
+    const Rect r = bounds_of(f, seat.size.x, seat.size.z);
+    const Vec middle = f.origin;
+    if (!free({middle.x - 0.05f, middle.z - 0.05f, middle.x + 0.05f, middle.z + 0.05f}, 0, 0.3f) &&
+        back > 0.1f) {
+      return;
+    }
+    for (const Rect& q : plan_.rects) {
+      if (r.x0 < q.x0 || r.x1 > q.x1 || r.z0 < q.z0 || r.z1 > q.z1) continue;
+      stand(r, seat.size.y);
+      if (!model_instead(f, seat.size)) seat.draw(set_, set_.solid(f));
+      return;
+    }
+  }
+
+  /// A desk with its chair.
+  void workplace(bool at_wall) {
+    const Piece t = desk(set_, d_);
+    for (int attempt = 0; attempt < 12; ++attempt) {
+      Frame f;
+      if (at_wall) {
+        const Edge& e = plan_.edges[d_.below(static_cast<int>(plan_.edges.size()))];
+        if (e.length < t.size.x) continue;
+        const float x = d_.range(t.size.x / 2, e.length - t.size.x / 2);
+        if (covers(e, x, t.size.x, 0, 0.8f)) continue;
+        f = e.frame * at(x, 0, t.size.z / 2 + 0.03f);
+      } else {
+        const Rect& r = plan_.rects[0];
+        f = turned(static_cast<float>(d_.below(4)) * 1.5707963f,
+                   {d_.range(r.x0, r.x1), 0, d_.range(r.z0, r.z1)});
+      }
+      if (!free(bounds_of(f * at(0, 0, 0.3f), t.size.x, t.size.z + 0.6f), 0, 1.1f)) continue;
+      draw(t, f);
+      seat_at(f, d_.chance(0.8f) ? office_chair(set_, d_) : chair(set_, d_), {0, 0, t.size.z / 2},
+              3.1415927f, 0.9f);
+      return;
+    }
+  }
+
+  void offices() {
+    const Rect& r = plan_.rects[0];
+    const int count = 1 + static_cast<int>(r.width() * r.depth() * d_.range(0.05f, 0.16f));
+    const bool at_wall = d_.chance(0.5f);
+    for (int i = 0; i < count; ++i) workplace(at_wall || d_.chance(0.3f));
+  }
+
+  void column() {
+    const float w = d_.range(0.25f, 0.6f), high = plan_.height;
+    const int m = d_.chance(0.6f) ? plan_.edges[0].material : set_.add(surface(d_));
+    const bool round = d_.chance(0.4f);
+    loose({{w, high, w}, [=](Set&, Builder b) {
+             if (round) {
+               b.cylinder({}, w / 2, high, m, -1, 20);
+             } else {
+               b.box({-w / 2, 0, -w / 2}, {w / 2, high, w / 2}, m);
+             }
+           }});
+  }
+
+  void rug() {
+    const Rect& r = plan_.rects[d_.below(static_cast<int>(plan_.rects.size()))];
+    const float w = std::min(r.width() * 0.8f, d_.range(0.8f, 3)),
+                depth = std::min(r.depth() * 0.8f, d_.range(0.6f, 2.2f));
+    Material m = cloth(d_);
+    if (d_.chance(0.4f))
+      m.pattern = d_.pick({Pattern::blobs, Pattern::stripes, Pattern::checks}),
+      m.scale = d_.range(0.05f, 0.4f);
+    const int material = set_.add(m);
+    const Frame f = turned(
+        d_.chance(0.7f) ? 0 : d_.range(-0.5f, 0.5f),
+        {d_.range(r.x0 + w / 2, r.x1 - w / 2), 0, d_.range(r.z0 + depth / 2, r.z1 - depth / 2)});
+    if (d_.chance(0.8f)) {
+      set_.solid(f).box({-w / 2, 0, -depth / 2}, {w / 2, 0.008f, depth / 2}, material);
+    } else {
+      set_.solid(f).cylinder({}, depth / 2, 0.008f, material, -1, 28);
+    }
+  }
+
+  void common(float share) {
+    const auto n = [&](float most) { return d_.below(1 + static_cast<int>(most * share)); };
+    const bool home = plan_.kind == RoomKind::living_room || plan_.kind == RoomKind::bedroom;
+    if (d_.chance(home ? 0.7f : 0.15f)) rug();
+    for (int i = n(7); i > 0; --i) hang(wall_picture(set_, d_), 0.7f, 1.6f);
+    for (int i = n(2); i > 0; --i) hang(wall_shelf(set_, d_), 1, 1.8f);
+    for (int i = n(5); i > 0; --i) hang(wall_socket(set_, d_), 0.15f, 0.4f);
+    for (int i = n(3); i > 0; --i) hang(wall_socket(set_, d_), 1, 1.2f);
+    if (d_.chance(0.2f)) hang(wall_clock(set_, d_), 1.6f, 2);
+    if (d_.chance(0.12f)) hang(wall_mirror(set_, d_), 0.5f, 1);
+    if (d_.chance(0.1f)) hang(wall_board(set_, d_), 0.8f, 1.1f);
+    if (d_.chance(0.1f)) hang(wall_screen(set_, d_), 0.8f, 1.3f);
+    if (d_.chance(home ? 0.5f : 0.1f)) loose(floor_lamp(set_, d_));
+    for (int i = n(plan_.kind == RoomKind::storage ? 1 : 4); i > 0; --i)
+      d_.chance(0.6f) ? wall(plant(set_, d_)) : loose(plant(set_, d_));
+    for (int i = n(3); i > 0; --i) wall(bin(set_, d_));
+    for (int i = n(3); i > 0; --i) loose(box_pile(set_, d_));
+    for (int i = n(3); i > 0; --i) loose(bag(set_, d_));
+    for (int i = n(3); i > 0; --i) loose(d_.chance(0.5f) ? chair(set_, d_) : stool(set_, d_));
+    const bool messy = d_.chance(0.25f);
+    for (int i = messy ? n(20) : 0; i > 0; --i) {
+      const Rect& r = plan_.rects[0];
+      const Frame f = turned(d_.range(-3, 3), {d_.range(r.x0 + 0.2f, r.x1 - 0.2f), 0,
+                                               d_.range(r.z0 + 0.2f, r.z1 - 0.2f)});
+      if (free(bounds_of(f, 0.3f, 0.3f), 0, 0.3f))
+        clutter(set_, d_, set_.solid(f), 0.4f, 0.4f, 0.4f);
+    }
+  }
+
+  Set& set_;
+  const Plan& plan_;
+  Dice d_;
+};
+
+RoomKind pick_kind(Dice& d) {
+  constexpr std::array<float, kRoomKinds> share = {0.12f, 0.17f, 0.14f, 0.2f,
+                                                   0.07f, 0.13f, 0.11f, 0.06f};
+  float left = d.unit();
+  for (int k = 0; k < kRoomKinds; ++k) {
+    left -= share[k];
+    if (left < 0) return static_cast<RoomKind>(k);
+  }
+  return RoomKind::office;
+}
+
+Sky make_sky(Dice& d) {
+  Sky s;
+  s.seed = d.bits();
+  const bool night = d.chance(0.1f);
+  const float bright = night ? 0.01f : d.range(1.2f, 5);
+  s.zenith = hsv(d.range(0.55f, 0.62f), d.range(0.1f, 0.55f), 0.85f) * bright;
+  s.horizon = hsv(d.range(0.05f, 0.65f), d.range(0, 0.2f), 0.95f) * bright;
+  s.ground = hsv(d.range(0.08f, 0.35f), d.range(0.05f, 0.4f), d.range(0.3f, 0.6f)) * bright;
+  s.walls = hsv(d.range(0, 0.15f), d.range(0.05f, 0.4f), d.range(0.4f, 0.85f)) * bright * 0.8f;
+  s.leaves = hsv(d.range(0.2f, 0.35f), d.range(0.3f, 0.6f), d.range(0.2f, 0.5f)) * bright;
+  s.skyline = d.chance(0.3f) ? 0.02f : d.range(0.1f, 0.9f);
+  const float azimuth = d.range(0, 6.2831853f), slope = d.range(0.25f, 1.1f);
+  s.sun_direction = normalized({std::cos(azimuth), slope, std::sin(azimuth)});
+  if (!night && d.chance(0.4f))
+    s.sun_irradiance =
+        Vec{1, d.range(0.8f, 0.95f), d.range(0.55f, 0.9f)} * bright * d.range(1.5f, 4);
+  return s;
+}
+
+Style make_style(Set& set) {
+  Dice& d = set.dice;
+  Style s;
+  s.wall = d.range(0.1f, 0.4f);
+  const Vec light = hsv(d.range(0.05f, 0.2f), d.range(0, 0.08f), d.range(0.8f, 0.97f));
+  const int wood = set.add(wood_material(d)),
+            pale = set.add(plain(light, d.chance(0.4f) ? 0.03f : 0));
+  const int colored = set.add(plain(any_color(d)));
+  s.trim = d.pick({pale, pale, pale, wood, colored});
+  s.door = d.pick({pale, pale, wood, colored, s.trim});
+  s.frame = d.pick({pale, pale, pale, wood, colored});
+  s.metal = set.add(metal(d));
+  s.dark = set.add(plain(hsv(d.unit(), d.range(0, 0.1f), d.range(0.05f, 0.2f)), 0.02f));
+  s.white = set.add(plain(srgb(0.9f, 0.9f, 0.88f)));
+  return s;
+}
+
+}  // namespace
+
+void furnish_space(Set& set, const Plan& plan, bool main) { Furnisher(set, plan).furnish(main); }
+
+void furnish(Scene& scene, std::uint64_t seed, const RoomOptions& options) {
+  Set set{scene, Dice(seed, 1), options, {}, {}, {}};
+  scene.mirrors = options.mirrors;
+  scene.spaces.resize(1);
+  scene.spaces[0].kind = pick_kind(set.dice);
+  scene.sky = make_sky(set.dice);
+  set.style = make_style(set);
+  std::vector<Plan> plans = plan_building(set);
+  scene.spaces.clear();
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    Space s;
+    s.kind = plans[i].kind;
+    s.rects = plans[i].rects;
+    s.height = plans[i].height;
+    s.low = {1e9f, 0, 1e9f};
+    s.high = {-1e9f, s.height, -1e9f};
+    for (const Rect& r : s.rects) {
+      s.low = min(s.low, {r.x0, 0, r.z0});
+      s.high = max(s.high, {r.x1, s.height, r.z1});
+    }
+    scene.spaces.push_back(s);
+    build_walls(set, plans[i], i == 0);
+  }
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    furnish_space(set, plans[i], i == 0);
+    Dice d = set.dice.child();
+    const float fill = d.unit() * d.unit();
+    const std::vector<Top> tops = std::move(set.tops);
+    set.tops.clear();
+    for (const Top& top : tops) strew(set, d, top, fill);
+  }
+}
+
+}  // namespace ps::rooms

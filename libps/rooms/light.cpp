@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/rooms/light.h"
+
+#include <cmath>
+
+namespace ps::rooms {
+namespace {
+
+constexpr float kPi = 3.14159265f;
+constexpr int kDirections = 3 * kRays;  ///< rays of a probe
+constexpr int kBounces = 3;
+constexpr float kFaint = 0.003f;  ///< irradiance that nobody sees
+
+/// What an emitter would send if nothing stood between, from its middle.
+float rate(const Emitter& e, Vec p, Vec n) {
+  const Vec to = e.center - p;
+  const float d2 = std::max(dot(to, to), 0.01f), d = std::sqrt(d2);
+  const float at_surface = std::max(0.f, dot(n, to) / d) + 0.05f;
+  if (e.round) return kPi * e.half_u.x * e.half_u.x * at_surface / d2;
+  const float at_lamp = std::max(0.f, -dot(e.normal, to) / d);
+  return 4 * length(e.half_u) * length(e.half_v) * at_surface * at_lamp /
+         (d2 + dot(e.half_u, e.half_u) + dot(e.half_v, e.half_v));
+}
+
+struct Sample {
+  Vec to;
+  Vec irradiance;
+};
+
+Sample sample_group(const LightGroup& g, const Lit& l) {
+  const int n = static_cast<int>(g.emitters.size());
+  float rates[64], total = 0;
+  const int used = std::min(n, 64);
+  for (int i = 0; i < used; ++i) total += rates[i] = rate(g.emitters[i], l.position, l.normal);
+  if (total * luminance(g.radiance) < kFaint) return {};
+  float left = l.choice * total;
+  int pick = 0;
+  while (pick + 1 < used && left >= rates[pick]) left -= rates[pick++];
+  const Emitter& e = g.emitters[pick];
+  const float share = rates[pick] / total;
+  if (share <= 0) return {};
+  Vec to;
+  float area;
+  if (e.round) {
+    const float z = 2 * l.s - 1, r = std::sqrt(std::max(0.f, 1 - z * z)), a = 2 * kPi * l.t;
+    to = e.center + Vec{r * std::cos(a), z, r * std::sin(a)} * e.half_u.x - l.position;
+    area = kPi * e.half_u.x * e.half_u.x;
+  } else {
+    to = e.center + e.half_u * (2 * l.s - 1) + e.half_v * (2 * l.t - 1) - l.position;
+    area = 4 * length(e.half_u) * length(e.half_v);
+  }
+  const float d2 = std::max(dot(to, to), 0.0025f), d = std::sqrt(d2);
+  const float at_surface = dot(l.normal, to) / d;
+  const float at_lamp = e.round ? 1.f : -dot(e.normal, to) / d;
+  if (at_surface <= 0 || at_lamp <= 0) return {};
+  return {to, g.radiance * std::min(area * at_surface * at_lamp / (d2 * share), kPi)};
+}
+
+}  // namespace
+
+void add_direct(const Scene& scene, Lit* lit) {
+  Rays rays;
+  for (const LightGroup& g : scene.lights) {
+    clear(rays);
+    Vec sent[kRays];
+    bool any = false;
+    for (int i = 0; i < kRays; ++i) {
+      if (!lit[i].on) continue;
+      const Sample s = sample_group(g, lit[i]);
+      if (luminance(s.irradiance) <= 0) continue;
+      sent[i] = s.irradiance;
+      set_ray(rays, i, lit[i].position, s.to, 0.97f);
+      any = true;
+    }
+    if (!any) continue;
+    scene.blocked(rays);
+    for (int i = 0; i < kRays; ++i) {
+      if (rays.reach[i] > 0) lit[i].irradiance += sent[i];
+    }
+  }
+  if (luminance(scene.sky.sun_irradiance) <= 0) return;
+  clear(rays);
+  bool any = false;
+  const Vec sun = scene.sky.sun_direction;
+  for (int i = 0; i < kRays; ++i) {
+    if (!lit[i].on || dot(lit[i].normal, sun) <= 0) continue;
+    any = true;
+    const Vec spread{(lit[i].s - 0.5f) * 0.02f, 0, (lit[i].t - 0.5f) * 0.02f};
+    set_ray(rays, i, lit[i].position, sun + spread, 100);
+  }
+  if (!any) return;
+  scene.blocked(rays);
+  for (int i = 0; i < kRays; ++i) {
+    if (rays.reach[i] > 0) {
+      lit[i].irradiance += scene.sky.sun_irradiance * dot(lit[i].normal, sun);
+    }
+  }
+}
+
+namespace {
+
+/// What a probe's ray met.
+struct Met {
+  int probe;
+  Vec direction, position, normal, albedo, direct;
+};
+
+Vec probe_place(const Probes& p, int index) {
+  const int i = index % p.nx, j = index / p.nx % p.ny, k = index / (p.nx * p.ny);
+  return p.low + p.step * Vec{static_cast<float>(i), static_cast<float>(j), static_cast<float>(k)};
+}
+
+void lay_probes(Space& s) {
+  Probes& p = s.probes;
+  const Vec size = s.high - s.low;
+  const auto count = [](float length, float pitch, int most) {
+    return std::clamp(static_cast<int>(length / pitch) + 2, 2, most);
+  };
+  p.nx = count(size.x, 1.1f, 9);
+  p.nz = count(size.z, 1.1f, 9);
+  p.ny = count(size.y, 1.2f, 4);
+  const Vec edge{0.12f, 0.12f, 0.12f};
+  p.low = s.low + edge;
+  const Vec inner = size - edge * 2;
+  p.step = {inner.x / static_cast<float>(p.nx - 1), inner.y / static_cast<float>(p.ny - 1),
+            inner.z / static_cast<float>(p.nz - 1)};
+  p.cubes.assign(static_cast<std::size_t>(p.nx) * p.ny * p.nz, {});
+}
+
+/// Sixteen rays of a probe; @return how many saw the back of something.
+int cast(const Scene& scene, Vec from, int probe, int packet, std::vector<Met>& met) {
+  Rays rays;
+  clear(rays);
+  for (int i = 0; i < kRays; ++i) {
+    const float k = static_cast<float>(packet * kRays + i);
+    const float z = 1 - (2 * k + 1) / kDirections, r = std::sqrt(1 - z * z);
+    const float a = 2.3999632f * k + static_cast<float>(probe % 7);
+    set_ray(rays, i, from, {r * std::cos(a), z, r * std::sin(a)}, 100);
+  }
+  scene.nearest(rays);
+  Lit lit[kRays];
+  Surface surfaces[kRays];
+  int behind = 0;
+  for (int i = 0; i < kRays; ++i) {
+    if (rays.face[i] < 0) continue;
+    surfaces[i] = surface_of(scene, rays, i);
+    behind += rays.reach[i] < 0.06f ? 1 : 0;
+    lit[i].on = true;
+    lit[i].position = surfaces[i].position + surfaces[i].flat * 1e-3f;
+    lit[i].normal = surfaces[i].flat;
+    lit[i].choice = hash(probe, i, 1);
+    lit[i].s = hash(probe, i, 2);
+    lit[i].t = hash(probe, i, 3);
+  }
+  add_direct(scene, lit);
+  for (int i = 0; i < kRays; ++i) {
+    if (!lit[i].on) continue;
+    const Surface& s = surfaces[i];
+    const Vec d{rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]};
+    met.push_back({probe, d, s.position, s.flat, albedo(*s.material, *s.pictures, s.u, s.v, 0.5f),
+                   lit[i].irradiance});
+  }
+  return behind;
+}
+
+void bake_space(const Scene& scene, Space& space, std::vector<float>* seen) {
+  lay_probes(space);
+  Probes& p = space.probes;
+  const int count = static_cast<int>(p.cubes.size());
+  std::vector<Met> met;
+  met.reserve(static_cast<std::size_t>(count) * kDirections);
+  std::vector<bool> inside(count);
+  for (int probe = 0; probe < count; ++probe) {
+    int behind = 0;
+    const Vec from = probe_place(p, probe);
+    for (int packet = 0; packet < kDirections / kRays; ++packet)
+      behind += cast(scene, from, probe, packet, met);
+    inside[probe] = behind > kDirections / 2;
+  }
+  for (int bounce = 0; bounce < kBounces; ++bounce) {
+    Probes next = p;
+    next.cubes.assign(count, {});
+    for (const Met& m : met) {
+      const Vec out = m.albedo * (m.direct + p.irradiance(m.position, m.normal)) * (1 / kPi);
+      const float d[6] = {m.direction.x,  -m.direction.x, m.direction.y,
+                          -m.direction.y, m.direction.z,  -m.direction.z};
+      for (int f = 0; f < 6; ++f) {
+        if (d[f] > 0) next.cubes[m.probe][f] += out * (d[f] * 4 * kPi / kDirections);
+      }
+      if (seen && bounce == kBounces - 1) seen->push_back(luminance(out));
+    }
+    std::array<Vec, 6> mean{};
+    int outside = 0;
+    for (int i = 0; i < count; ++i) {
+      if (inside[i]) continue;
+      ++outside;
+      for (int f = 0; f < 6; ++f) mean[f] += next.cubes[i][f];
+    }
+    for (Vec& m : mean) m *= 1 / static_cast<float>(std::max(1, outside));
+    for (int i = 0; i < count; ++i) {
+      if (inside[i]) next.cubes[i] = mean;
+    }
+    p = std::move(next);
+  }
+}
+
+}  // namespace
+
+void bake(Scene& scene) {
+  std::vector<float> seen;
+  for (std::size_t i = 0; i < scene.spaces.size(); ++i) {
+    bake_space(scene, scene.spaces[i], i == 0 ? &seen : nullptr);
+  }
+  double sum = 0;
+  for (const float l : seen) sum += std::log(std::max(l, 1e-4f));
+  const float mean =
+      seen.empty() ? 0.2f : std::exp(static_cast<float>(sum / static_cast<double>(seen.size())));
+  scene.exposure = 0.2f / std::max(mean, 1e-3f);
+}
+
+}  // namespace ps::rooms

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Internal to the rooms room.
+#pragma once
+
+#include "libps/rooms/scene.h"
+
+namespace ps::rooms {
+
+/// A place to be lit. A packet holds kRays of these.
+struct Lit {
+  bool on = false;
+  Vec position;  ///< a little above its surface
+  Vec normal;
+  float choice = 0.5f, s = 0.5f, t = 0.5f;  ///< in [0,1): which lamp, and where on it
+  Vec irradiance;                           ///< what came, added to
+};
+
+/// Adds the light that comes straight from lamps, windows and the sun: one shadow ray for each
+/// group of lights. Too little to be seen is left out.
+void add_direct(const Scene& scene, Lit* lit);
+
+/// Fills the probes of all spaces with bounce light and sets the exposure.
+void bake(Scene& scene);
+
+}  // namespace ps::rooms

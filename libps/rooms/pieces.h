@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Internal to the rooms room: procedural furniture.
+#pragma once
+
+#include <functional>
+
+#include "libps/rooms/set.h"
+
+namespace ps::rooms {
+
+/// Furniture that is decided upon but not yet placed. It stands on y = 0 about the origin, its
+/// back at z = -size.z / 2, its front towards z.
+struct Piece {
+  Vec size;  ///< width, height, depth, metres
+  std::function<void(Set&, Builder)> draw;
+};
+
+// pieces_seats.cpp
+Piece chair(Set& set, Dice& d);
+Piece office_chair(Set& set, Dice& d);
+Piece stool(Set& set, Dice& d);
+Piece sofa(Set& set, Dice& d, bool single);
+Piece bed(Set& set, Dice& d);
+
+// pieces_cases.cpp
+Piece table(Set& set, Dice& d, bool low);
+Piece round_table(Set& set, Dice& d);
+Piece desk(Set& set, Dice& d);
+Piece shelf(Set& set, Dice& d);
+Piece cupboard(Set& set, Dice& d, float low, float high);  ///< heights to choose from
+Piece kitchen_row(Set& set, Dice& d, float width);
+Piece fridge(Set& set, Dice& d);
+Piece counter(Set& set, Dice& d);
+
+// pieces_small.cpp
+Piece plant(Set& set, Dice& d);
+Piece floor_lamp(Set& set, Dice& d);
+Piece bin(Set& set, Dice& d);
+Piece box_pile(Set& set, Dice& d);
+Piece toilet(Set& set, Dice& d);
+Piece bathtub(Set& set, Dice& d);
+Piece basin(Set& set, Dice& d);
+Piece stepladder(Set& set, Dice& d);
+Piece bag(Set& set, Dice& d);
+/// One thing that stands on a table or shelf, at most this large.
+void clutter(Set& set, Dice& d, Builder b, float width, float depth, float height);
+/// Fills a top with things; `fill` of 1 is crowded.
+void strew(Set& set, Dice& d, const Top& top, float fill);
+
+// pieces_wall.cpp: things on a wall, drawn at (0, 0, 0), growing along z.
+Piece wall_picture(Set& set, Dice& d);
+Piece wall_board(Set& set, Dice& d);
+Piece wall_screen(Set& set, Dice& d);
+Piece wall_shelf(Set& set, Dice& d);
+Piece wall_mirror(Set& set, Dice& d);
+Piece wall_clock(Set& set, Dice& d);
+Piece coat_rack(Set& set, Dice& d);
+Piece wall_socket(Set& set, Dice& d);
+
+}  // namespace ps::rooms

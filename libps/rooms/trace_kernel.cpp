@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Compiled once for each instruction set (PS_ISA). C headers only: nothing inline may be shared.
+// Loops over the rays of a packet are left to the compiler to turn into vectors.
+#include "libps/rooms/trace_kernel.h"
+
+#define PS_JOIN2(a, b) a##b
+#define PS_JOIN(a, b) PS_JOIN2(a, b)
+
+namespace ps {
+namespace rooms {
+namespace trace_kernel {
+namespace {
+
+/// A surface does not shade itself, and a crack between triangles is closed.
+constexpr float kNear = 1e-5f, kOutside = -1e-5f;
+
+inline float smaller(float a, float b) { return a < b ? a : b; }
+inline float larger(float a, float b) { return a > b ? a : b; }
+
+inline bool meets_box(const TraceNode& n, const Rays& r) {
+  int any = 0;
+  for (int i = 0; i < kRays; ++i) {
+    const float ax = (n.low[0] - r.origin[0][i]) * r.inverse[0][i];
+    const float bx = (n.high[0] - r.origin[0][i]) * r.inverse[0][i];
+    const float ay = (n.low[1] - r.origin[1][i]) * r.inverse[1][i];
+    const float by = (n.high[1] - r.origin[1][i]) * r.inverse[1][i];
+    const float az = (n.low[2] - r.origin[2][i]) * r.inverse[2][i];
+    const float bz = (n.high[2] - r.origin[2][i]) * r.inverse[2][i];
+    const float in = larger(larger(smaller(ax, bx), smaller(ay, by)), larger(smaller(az, bz), 0.f));
+    const float out =
+        smaller(smaller(larger(ax, bx), larger(ay, by)), smaller(larger(az, bz), r.reach[i]));
+    any |= in <= out ? 1 : 0;
+  }
+  return any != 0;
+}
+
+/// Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection" (1997).
+struct Hit {
+  float t, u, v;
+  int yes;
+};
+
+inline Hit meet(const TraceTriangle& q, const Rays& r, int i) {
+  const float dx = r.direction[0][i], dy = r.direction[1][i], dz = r.direction[2][i];
+  const float px = dy * q.edge2[2] - dz * q.edge2[1];
+  const float py = dz * q.edge2[0] - dx * q.edge2[2];
+  const float pz = dx * q.edge2[1] - dy * q.edge2[0];
+  const float det = q.edge1[0] * px + q.edge1[1] * py + q.edge1[2] * pz;
+  const float inverse = 1 / det;  // parallel: no comparison below holds
+  const float sx = r.origin[0][i] - q.corner[0], sy = r.origin[1][i] - q.corner[1],
+              sz = r.origin[2][i] - q.corner[2];
+  const float qx = sy * q.edge1[2] - sz * q.edge1[1];
+  const float qy = sz * q.edge1[0] - sx * q.edge1[2];
+  const float qz = sx * q.edge1[1] - sy * q.edge1[0];
+  Hit hit;
+  hit.u = (sx * px + sy * py + sz * pz) * inverse;
+  hit.v = (dx * qx + dy * qy + dz * qz) * inverse;
+  hit.t = (q.edge2[0] * qx + q.edge2[1] * qy + q.edge2[2] * qz) * inverse;
+  hit.yes = (hit.u >= kOutside) & (hit.v >= kOutside) & (hit.u + hit.v <= 1 - kOutside) &
+            (hit.t > kNear) & (hit.t < r.reach[i]);
+  return hit;
+}
+
+inline void keep_nearest(const TraceTriangle& q, int part, Rays* r) {
+  const int face = static_cast<int>(q.face);
+  for (int i = 0; i < kRays; ++i) {
+    const Hit hit = meet(q, *r, i);
+    r->reach[i] = hit.yes ? hit.t : r->reach[i];
+    r->u[i] = hit.yes ? hit.u : r->u[i];
+    r->v[i] = hit.yes ? hit.v : r->v[i];
+    r->face[i] = hit.yes ? face : r->face[i];
+    r->part[i] = hit.yes ? part : r->part[i];
+  }
+}
+
+/// @return false when no ray is left
+inline bool stop_blocked(const TraceTriangle& q, Rays* r) {
+  int left = 0;
+  for (int i = 0; i < kRays; ++i) {
+    const Hit hit = meet(q, *r, i);
+    r->reach[i] = hit.yes ? -1.f : r->reach[i];
+    left |= r->reach[i] > 0 ? 1 : 0;
+  }
+  return left != 0;
+}
+
+inline int lead(const Rays& r) {
+  for (int i = 0; i < kRays; ++i) {
+    if (r.reach[i] > 0) return i;
+  }
+  return -1;
+}
+
+}  // namespace
+
+void PS_JOIN(nearest_, PS_ISA)(const TraceNode* nodes, const TraceTriangle* triangles, int part,
+                               Rays* rays) {
+  const int first = lead(*rays);
+  if (first < 0) return;
+  uint32_t stack[64];
+  int size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const TraceNode& node = nodes[stack[--size]];
+    if (!meets_box(node, *rays)) continue;
+    if (node.count > 0) {
+      for (uint32_t t = node.first; t < node.first + node.count; ++t) {
+        keep_nearest(triangles[t], part, rays);
+      }
+    } else {
+      const uint32_t swap = rays->direction[node.axis][first] > 0 ? 0 : 1;
+      stack[size++] = node.first + 1 - swap;
+      stack[size++] = node.first + swap;
+    }
+  }
+}
+
+void PS_JOIN(blocked_, PS_ISA)(const TraceNode* nodes, const TraceTriangle* triangles, Rays* rays) {
+  const int first = lead(*rays);
+  if (first < 0) return;
+  uint32_t stack[64];
+  int size = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const TraceNode& node = nodes[stack[--size]];
+    if (!meets_box(node, *rays)) continue;
+    if (node.count > 0) {
+      for (uint32_t t = node.first; t < node.first + node.count; ++t) {
+        if (!stop_blocked(triangles[t], rays)) return;
+      }
+    } else {
+      const uint32_t swap = rays->direction[node.axis][first] > 0 ? 0 : 1;
+      stack[size++] = node.first + 1 - swap;
+      stack[size++] = node.first + swap;
+    }
+  }
+}
+
+}  // namespace trace_kernel
+}  // namespace rooms
+}  // namespace ps

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/rooms/tree.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+namespace ps::rooms {
+namespace {
+
+constexpr int kBins = 16;
+constexpr int kLargestLeaf = 4;
+constexpr int kDeepest = 56;  ///< the kernel's stack holds 64
+
+struct Box {
+  Vec low = {1e30f, 1e30f, 1e30f}, high = {-1e30f, -1e30f, -1e30f};
+
+  void add(Vec p) {
+    low = min(low, p);
+    high = max(high, p);
+  }
+  void add(const Box& b) {
+    low = min(low, b.low);
+    high = max(high, b.high);
+  }
+  float half_area() const {
+    const Vec d = high - low;
+    return d.x < 0 ? 0 : d.x * d.y + d.y * d.z + d.z * d.x;
+  }
+};
+
+float along(Vec v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
+
+struct Item {
+  Box box;
+  Vec center;
+  std::uint32_t face;
+};
+
+struct Split {
+  int axis = -1;
+  float place = 0;
+};
+
+/// The cheapest of the planes between bins, over the three axes.
+Split best_split(const Item* items, int count, const Box& centers) {
+  Split best;
+  float best_cost = std::numeric_limits<float>::max();
+  for (int axis = 0; axis < 3; ++axis) {
+    const float low = along(centers.low, axis), extent = along(centers.high, axis) - low;
+    if (!(extent > 1e-6f)) continue;
+    Box boxes[kBins];
+    int counts[kBins] = {};
+    for (int i = 0; i < count; ++i) {
+      const int bin = std::min(
+          kBins - 1, static_cast<int>((along(items[i].center, axis) - low) / extent * kBins));
+      boxes[bin].add(items[i].box);
+      ++counts[bin];
+    }
+    float right_cost[kBins];
+    Box right;
+    int right_count = 0;
+    for (int b = kBins - 1; b > 0; --b) {
+      right.add(boxes[b]);
+      right_count += counts[b];
+      right_cost[b] = right.half_area() * static_cast<float>(right_count);
+    }
+    Box left;
+    int left_count = 0;
+    for (int b = 1; b < kBins; ++b) {
+      left.add(boxes[b - 1]);
+      left_count += counts[b - 1];
+      if (left_count == 0 || left_count == count) continue;
+      const float cost = left.half_area() * static_cast<float>(left_count) + right_cost[b];
+      if (cost < best_cost) {
+        best_cost = cost;
+        best = {axis, low + extent * static_cast<float>(b) / kBins};
+      }
+    }
+  }
+  return best;
+}
+
+class Builder {
+ public:
+  Builder(std::vector<Item>& items, std::vector<TraceNode>& nodes) : items_(items), nodes_(nodes) {}
+
+  void build(std::uint32_t node, int begin, int end, int depth) {
+    Box box, centers;
+    for (int i = begin; i < end; ++i) {
+      box.add(items_[i].box);
+      centers.add(items_[i].center);
+    }
+    TraceNode n{{box.low.x, box.low.y, box.low.z},
+                {box.high.x, box.high.y, box.high.z},
+                static_cast<std::uint32_t>(begin),
+                static_cast<std::uint16_t>(end - begin),
+                0};
+    int middle = begin;
+    if (end - begin > kLargestLeaf && depth < kDeepest) middle = split(begin, end, centers, n.axis);
+    if (middle == begin && end - begin > 0xffff) middle = (begin + end) / 2;
+    if (middle > begin) {
+      n.first = static_cast<std::uint32_t>(nodes_.size());
+      n.count = 0;
+    }
+    nodes_[node] = n;
+    if (middle == begin) return;
+    nodes_.resize(nodes_.size() + 2);
+    build(n.first, begin, middle, depth + 1);
+    build(n.first + 1, middle, end, depth + 1);
+  }
+
+ private:
+  /// @return where the second half begins; `begin` if all are in one place
+  int split(int begin, int end, const Box& centers, std::uint16_t& axis) {
+    const Split best = best_split(&items_[begin], end - begin, centers);
+    if (best.axis < 0) return begin;
+    axis = static_cast<std::uint16_t>(best.axis);
+    const auto middle = std::partition(
+        items_.begin() + begin, items_.begin() + end,
+        [&](const Item& item) { return along(item.center, best.axis) < best.place; });
+    const int found = static_cast<int>(middle - items_.begin());
+    return found == end ? begin : found;
+  }
+
+  std::vector<Item>& items_;
+  std::vector<TraceNode>& nodes_;
+};
+
+}  // namespace
+
+Tree::Tree(const Mesh& mesh) {
+  std::vector<Item> items;
+  items.reserve(mesh.faces.size());
+  for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
+    Item item;
+    for (const std::uint32_t c : mesh.faces[f].corners) item.box.add(mesh.corners[c].position);
+    item.center = (item.box.low + item.box.high) * 0.5f;
+    // Boxes of flat things must not be lost to rounding.
+    item.box.low = item.box.low - Vec{1e-5f, 1e-5f, 1e-5f};
+    item.box.high = item.box.high + Vec{1e-5f, 1e-5f, 1e-5f};
+    item.face = f;
+    items.push_back(item);
+  }
+  if (items.empty()) return;
+  nodes.reserve(items.size());
+  nodes.resize(1);
+  Builder(items, nodes).build(0, 0, static_cast<int>(items.size()), 0);
+  triangles.reserve(items.size());
+  for (const Item& item : items) {
+    const auto& c = mesh.faces[item.face].corners;
+    const Vec p = mesh.corners[c[0]].position;
+    const Vec a = mesh.corners[c[1]].position - p, b = mesh.corners[c[2]].position - p;
+    triangles.push_back({{p.x, p.y, p.z}, {a.x, a.y, a.z}, {b.x, b.y, b.z}, item.face});
+  }
+}
+
+void clear(Rays& rays) {
+  for (int i = 0; i < kRays; ++i) {
+    rays.reach[i] = -1;
+    rays.face[i] = rays.part[i] = -1;
+    rays.u[i] = rays.v[i] = 0;
+    for (int a = 0; a < 3; ++a) {
+      rays.origin[a][i] = 0;
+      rays.direction[a][i] = rays.inverse[a][i] = 1;
+    }
+  }
+}
+
+void set_ray(Rays& rays, int i, Vec origin, Vec direction, float reach) {
+  const float o[3] = {origin.x, origin.y, origin.z};
+  const float d[3] = {direction.x, direction.y, direction.z};
+  for (int a = 0; a < 3; ++a) {
+    rays.origin[a][i] = o[a];
+    rays.direction[a][i] = d[a];
+    rays.inverse[a][i] = 1 / (std::abs(d[a]) > 1e-12f ? d[a] : 1e-12f);
+  }
+  rays.reach[i] = reach;
+  rays.face[i] = rays.part[i] = -1;
+}
+
+namespace {
+
+struct Kernels {
+  trace_kernel::Nearest* nearest;
+  trace_kernel::Blocked* blocked;
+};
+
+Kernels choose() {
+#ifdef PS_X86_KERNELS
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512dq")) {
+    return {trace_kernel::nearest_avx512, trace_kernel::blocked_avx512};
+  }
+  if (__builtin_cpu_supports("avx2")) {
+    return {trace_kernel::nearest_avx2, trace_kernel::blocked_avx2};
+  }
+#endif
+  return {trace_kernel::nearest_baseline, trace_kernel::blocked_baseline};
+}
+
+const Kernels kKernels = choose();
+
+}  // namespace
+
+void nearest(const Tree& tree, int part, Rays& rays) {
+  if (!tree.nodes.empty()) {
+    kKernels.nearest(tree.nodes.data(), tree.triangles.data(), part, &rays);
+  }
+}
+
+void blocked(const Tree& tree, Rays& rays) {
+  if (!tree.nodes.empty()) {
+    kKernels.blocked(tree.nodes.data(), tree.triangles.data(), &rays);
+  }
+}
+
+}  // namespace ps::rooms

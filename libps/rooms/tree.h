@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Internal to the rooms room.
+#pragma once
+
+#include <vector>
+
+#include "libps/rooms/mesh.h"
+#include "libps/rooms/trace_kernel.h"
+
+namespace ps::rooms {
+
+/// The triangles of a mesh, sorted for rays: a binary tree of boxes by the surface area heuristic
+/// (Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007).
+struct Tree {
+  std::vector<TraceNode> nodes;  ///< none for an empty mesh
+  std::vector<TraceTriangle> triangles;
+
+  Tree() = default;
+  explicit Tree(const Mesh& mesh);
+};
+
+/// Empties the packet: no rays.
+void clear(Rays& rays);
+/// Sets ray i: origin + t direction for t in (0, reach).
+void set_ray(Rays& rays, int i, Vec origin, Vec direction, float reach);
+
+/// See trace_kernel.h; nothing happens for an empty tree.
+void nearest(const Tree& tree, int part, Rays& rays);
+void blocked(const Tree& tree, Rays& rays);
+
+}  // namespace ps::rooms
