@@ -16,7 +16,7 @@ namespace {
 /// Not by the run path: sanitizers stand between us and dlopen(), which would go by theirs.
 fs::path path_of(const std::string& part) {
   std::error_code ignored;
-  const fs::path folder = fs::read_symlink("/proc/self/exe", ignored).parent_path();
+  const fs::path folder = program_folder();
   const std::string name = "libpixelsynth_" + part + ".so";
   const fs::path beside = folder / name;
   const fs::path installed = (folder / PS_PARTS / name).lexically_normal();
@@ -27,6 +27,11 @@ fs::path path_of(const std::string& part) {
 }
 
 }  // namespace
+
+fs::path program_folder() {
+  std::error_code ignored;
+  return fs::read_symlink("/proc/self/exe", ignored).parent_path();
+}
 
 void* address_in_part(const std::string& part, const char* function) {
   const fs::path path = path_of(part);

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 namespace ps::apps {
+
+/// @return where the program lies
+std::filesystem::path program_folder();
 
 /// @brief The address of a function in a part of the program that is loaded when it is first used,
 /// as it brings many libraries along: `viewer` (VTK) or `video` (FFmpeg). Part NAME is the shared

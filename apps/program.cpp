@@ -64,6 +64,7 @@ int run(int argc, char** argv) {
   add_common_options(program, context);
   program.parse_complete_callback([&] { set_threads(context.threads); });
   add_scene(program, context);
+  add_depth(program, context);
   add_fuse(program, context);
   add_render(program, context);
   add_view(program, context);

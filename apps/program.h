@@ -30,6 +30,7 @@ void add_fuse(CLI::App& program, const Context& context);
 void add_render(CLI::App& program, const Context& context);
 void add_view(CLI::App& program, const Context& context);
 void add_scene(CLI::App& program, const Context& context);
+void add_depth(CLI::App& program, const Context& context);
 void add_probe(CLI::App& program, const Context& context);
 void add_weights(CLI::App& program, const Context& context);
 

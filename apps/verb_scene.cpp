@@ -4,7 +4,9 @@
 #include <opencv2/imgproc.hpp>
 
 #include "apps/contact_sheet.h"
+#include "apps/depth_model.h"
 #include "apps/interrupt.h"
+#include "apps/lens_arguments.h"
 #include "apps/lift_arguments.h"
 #include "apps/output.h"
 #include "apps/program.h"
@@ -30,8 +32,8 @@ struct SceneArguments {
   std::string output;
   std::string depth;
   double depth_scale = 1000;
-  std::string intrinsics;
-  double fov = 0;  ///< degrees across; 0 = not given
+  std::string weights;
+  LensArguments lens;
   bool no_outpaint = false;
   LiftOptions lift;
 };
@@ -66,32 +68,30 @@ Depth read_depth_for(const SceneArguments& a, cv::Size photo, const Context& con
   return scaled;
 }
 
-/// The lens: what the user says, else what the photo says, else 60 degrees; says which.
-Intrinsics choose_lens(const SceneArguments& a, const Photo& photo, const Context& context) {
-  constexpr double kDefaultFov = 60;
-  const int width = photo.color.cols, height = photo.color.rows;
-  if (!a.intrinsics.empty()) return read_intrinsics(a.intrinsics, width, height);
-  if (a.fov != 0) return intrinsics_from_fov(width, height, a.fov);
-  if (photo.focal_px) {
-    Intrinsics lens = intrinsics_from_fov(width, height, kDefaultFov);
-    lens.fx = lens.fy = *photo.focal_px;
-    check(lens, a.photo + ": EXIF focal length");
-    context.detail("lens: the photo's EXIF focal length");
-    return lens;
-  }
-  context.say("lens: 60 degrees across, as the photo does not say; --intrinsics or --fov does");
-  return intrinsics_from_fov(width, height, kDefaultFov);
-}
-
-View read_view(const SceneArguments& a, const Context& context) {
-  const Photo photo = read_photo(a.photo);
+/// The photo as a view, and what the report says of where its lens and depth come from.
+struct Input {
   View view;
+  Json lens;
+  Json depth;
+};
+
+Input read_input(const SceneArguments& a, const Context& context) {
+  const Photo photo = read_photo(a.photo);
+  const PhotoLens lens = choose_lens(a.lens, photo, a.photo, context);
+  Input input{{}, to_json(lens), {{"from", a.depth}}};
+  View& view = input.view;
   view.world_from_cam = kPhotoPose;
   view.color = photo.color;
-  view.depth = read_depth_for(a, photo.color.size(), context);
-  view.intrinsics = choose_lens(a, photo, context);
+  view.intrinsics = lens.intrinsics;
+  if (a.depth.empty()) {
+    const DepthModel model = load_depth_model(a.weights, context);
+    view.depth = photo_depth(model.net, photo.color, lens.intrinsics, model.scale);
+    input.depth = scale_report(model, lens.intrinsics);
+  } else {
+    view.depth = read_depth_for(a, photo.color.size(), context);
+  }
   check(view, a.photo);
-  return view;
+  return input;
 }
 
 /// The input's own pose and the extremes of the eight directions (SPEC.md 2).
@@ -124,14 +124,16 @@ Image preview_of(const std::vector<SceneView>& views) {
   return contact_sheet(tiles);
 }
 
-Json report_of(const Cloud& cloud, const View& view, const std::vector<SceneView>& views) {
+Json report_of(const Cloud& cloud, const Input& input, const std::vector<SceneView>& views) {
+  const View& view = input.view;
   Json report = summary_of(cloud);
   const auto known = static_cast<std::size_t>(cv::countNonZero(view.depth > 0));
   report["pixels"] = {{"photo", view.depth.total()},
                       {"depth_known", known},
                       {"lifted", cloud.size()},
                       {"dropped", known - cloud.size()}};
-  report["lens"] = to_json(view.intrinsics);
+  report["lens"] = input.lens;
+  report["depth"] = input.depth;
   for (const SceneView& seen : views) {
     report["covered_share"][seen.name] = static_cast<double>(cv::countNonZero(seen.splat.hit)) /
                                          static_cast<double>(view.depth.total());
@@ -156,12 +158,6 @@ void write_all(OutputFolder& folder, const Cloud& cloud, const View& view,
 }
 
 void check_networks(const SceneArguments& a) {
-  if (a.depth.empty()) {
-    throw Error(
-        "scene",
-        "the networks are here but have no trained weights yet, so it cannot estimate depth",
-        "--depth FILE, the photo's depth image");
-  }
   if (!a.no_outpaint) {
     throw Error("scene",
                 "the networks are here but have no trained weights yet, so it cannot outpaint",
@@ -175,12 +171,13 @@ void run_scene(const SceneArguments& a, const CLI::App& verb, const Context& con
   note_interrupts();
   const Stopwatch total;
   OutputFolder folder(a.output);
-  const View view = read_view(a, context);
+  const Input input = read_input(a, context);
+  const View& view = input.view;
   const Cloud cloud = lift(view, 0, Origin::observed, a.lift);
-  if (cloud.empty()) throw Error(a.depth, "no pixel can be lifted", "depth in the range asked for");
+  if (cloud.empty()) throw Error(a.photo, "no pixel can be lifted", "depth in the range asked for");
   const std::vector<SceneView> views = render_views(cloud, view.intrinsics, context);
   write_all(folder, cloud, view, views);
-  Json report = report_of(cloud, view, views);
+  Json report = report_of(cloud, input, views);
   add_costs(report, total);
   const Json settings = settings_of(verb, context);
   folder.write("settings.json", [&](const Path& file) { write_json(file, settings); });
@@ -197,20 +194,14 @@ void add_options(CLI::App& verb, SceneArguments& a) {
       ->type_name("PHOTO");
   verb.add_option("-o,--output", a.output, "Folder to write")->required()->type_name("OUT");
   verb.add_option("--depth", a.depth,
-                  "The photo's depth: 16-bit PNG, or metres as PFM, 32-bit TIFF or EXR")
+                  "The photo's depth: 16-bit PNG, or metres as PFM, 32-bit TIFF or EXR (default: "
+                  "estimated, metres not promised)")
       ->type_name("FILE");
   verb.add_option("--depth-scale", a.depth_scale, "Units of a 16-bit depth file in a metre")
       ->type_name("S")
       ->check(in_range(1e-6, kNoBound));
-  auto* file = verb.add_option("--intrinsics", a.intrinsics,
-                               "Lens: Open3D JSON, COLMAP cameras.txt or 3x3 text")
-                   ->type_name("FILE");
-  verb.add_option("--fov", a.fov,
-                  "Lens: horizontal field of view in degrees (default: from EXIF, else 60)")
-      ->type_name("DEG")
-      ->check(in_range(1, 179))
-      ->excludes(file)
-      ->default_str("");
+  add_weights_option(verb, a.weights);
+  a.lens.add_to(verb);
   verb.add_flag("--no-outpaint", a.no_outpaint, "Invent nothing: only what the photo shows");
   add_lift_options(verb, a.lift);
 }
@@ -220,7 +211,8 @@ void add_options(CLI::App& verb, SceneArguments& a) {
 void add_scene(CLI::App& program, const Context& context) {
   auto* verb = program.add_subcommand(
       "scene",
-      "A photo and its depth to a scene: scene.ply, views/*.png to eight sides, preview.png, "
+      "A photo, and its depth if known, to a scene: scene.ply, views/*.png to eight sides, "
+      "preview.png, "
       "trajectory.txt, intrinsics.json, report.json and settings.json in one folder.\n"
       "The folder appears when all is done; in a folder that exists already, files of these names "
       "are replaced and others stay. The world has the photo's camera at its origin; x is right, y "

@@ -8,6 +8,7 @@ get_property(rooms GLOBAL PROPERTY PIXELSYNTH_ROOMS)
 install(TARGETS ${rooms} pixelsynth_pcl EXPORT pixelsynth-targets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS pixelsynth RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/weights DESTINATION ${CMAKE_INSTALL_DATADIR}/pixelsynth OPTIONAL)
 install(TARGETS pixelsynth_viewer pixelsynth_video LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/pixelsynth)
 
 # A header that says "// Internal to ..." first is its room's own affair.

@@ -17,16 +17,13 @@ constexpr int kSide = models::DepthNet::kMultiple;
 constexpr int kMostApart = 160;  ///< from one square to the next, pixels
 constexpr int kMostAspect = 100;
 
-void check(const Image& photo, const DepthScale& scale) {
+void check(const Image& photo) {
   if (photo.empty()) throw Error("photo", "has no pixels", "at least one");
   const auto [shorter, longer] = std::minmax(photo.cols, photo.rows);
   if (longer / shorter > kMostAspect) {
     throw Error("photo", "is " + std::to_string(photo.cols) + "x" + std::to_string(photo.rows),
                 "a long side of at most " + std::to_string(kMostAspect) + " short ones");
   }
-  const bool sound = scale.min_z > 0 && scale.max_z > scale.min_z && std::isfinite(scale.max_z) &&
-                     scale.canonical_focal > 0 && std::isfinite(scale.canonical_focal);
-  if (!sound) throw Error("depth scale", "is unsound", "0 < min_z < max_z, canonical_focal > 0");
 }
 
 /// Averages where it shrinks.
@@ -104,9 +101,17 @@ cv::Mat1f blended(const std::vector<cv::Mat1f>& squares, const std::vector<int>&
 
 }  // namespace
 
+void check(const DepthScale& scale, const std::string& where) {
+  const bool sound = scale.min_z > 0 && scale.max_z > scale.min_z && std::isfinite(scale.max_z) &&
+                     scale.canonical_focal > 0 && std::isfinite(scale.canonical_focal);
+  if (!sound)
+    throw Error(where, "its depth scale is unsound", "0 < min_z < max_z, canonical_focal > 0");
+}
+
 Depth photo_depth(const models::DepthNet& net, const Image& photo, const Intrinsics& lens,
                   const DepthScale& scale) {
-  check(photo, scale);
+  check(photo);
+  check(scale, "photo_depth");
   check(lens, "photo_depth");
   // Squares stand side by side: an upright photo's depth is made on its side.
   const bool upright = photo.rows > photo.cols;

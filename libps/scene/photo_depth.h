@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "libps/core/image.h"
 #include "libps/geometry/camera.h"
 #include "libps/models/depth_net.h"
@@ -14,6 +16,10 @@ struct DepthScale {
   float max_z = 100;           ///< and the greatest
   double canonical_focal = 1;  ///< of the camera that it takes all squares to be from, in sides
 };
+
+/// @brief Throws ps::Error, naming `where`, unless 0 < min_z < max_z, canonical_focal > 0, and all
+/// are finite.
+void check(const DepthScale& scale, const std::string& where);
 
 /// @brief Guesses the depth of a photo of any size, of an aspect up to 100, and of any focal
 /// length.

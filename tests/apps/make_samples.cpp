@@ -172,6 +172,47 @@ void write_weights(const fs::path& dir) {
                  "\x80\2M\xe9\3.\x80\2}.\x80\2cos\nsystem\nU\x09touch ran\x85R.");
 }
 
+/// A depth network by chance, as trained to this and that scale.
+void write_depth_networks(const fs::path& dir) {
+  TensorMap tensors;
+  for (auto& [name, tensor] : read_safetensors(PS_DATA_DIR "/golden/weights.safetensors")) {
+    if (name.rfind("pts_regressor.", 0) == 0) tensors[name] = std::move(tensor);
+  }
+  const auto write = [&](const char* name, const Metadata& metadata) {
+    write_safetensors(dir / name, tensors, metadata);
+  };
+  write("depth.safetensors", {{"min_z", "0.5"}, {"max_z", "10"}, {"canonical_focal", "1"}});
+  write("far.safetensors", {{"min_z", "100"}, {"max_z", "1000"}});
+  write("no_scale.safetensors", {});
+  write("bad_scale.safetensors", {{"min_z", "near"}, {"max_z", "10"}});
+  write("turned_scale.safetensors", {{"min_z", "10"}, {"max_z", "1"}});
+}
+
+/// The photo in other sizes, and one that says its focal length: in its EXIF block, IFD0 points to
+/// an EXIF directory with FocalLengthIn35mmFilm = 28.
+void write_sized_photos(const fs::path& dir) {
+  for (const cv::Size size : {cv::Size(16, 16), {3000, 500}, {20, 600}, {500, 2}}) {
+    Image photo(size);
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
+        photo(y, x) = {0.5f + 0.5f * std::sin(0.05f * static_cast<float>(x)), 0.3f,
+                       0.5f + 0.5f * std::cos(0.03f * static_cast<float>(y))};
+      }
+    }
+    const std::string name =
+        "p" + std::to_string(size.width) + "x" + std::to_string(size.height) + ".png";
+    write_image(dir / name, photo);
+  }
+  using namespace std::string_literals;
+  const std::string exif =
+      "Exif\0\0MM\0*\0\0\0\x08\0\x01\x87\x69\0\x04\0\0\0\x01\0\0\0\x1a\0\0\0\0"
+      "\0\x01\xa4\x05\0\x03\0\0\0\x01\0\x1c\0\0\0\0\0\0"s;
+  const std::string jpeg = bytes_of(dir / "photo.jpg");
+  const char length[] = {0, static_cast<char>(exif.size() + 2)};
+  write_text(dir / "exif.jpg",
+             jpeg.substr(0, 2) + "\xff\xe1" + std::string(length, 2) + exif + jpeg.substr(2));
+}
+
 }  // namespace
 }  // namespace ps
 
@@ -188,6 +229,8 @@ int main(int argc, char** argv) try {
   ps::write_bad_files(dir);
   ps::write_tensors(dir);
   ps::write_weights(dir);
+  ps::write_depth_networks(dir);
+  ps::write_sized_photos(dir);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "make_samples: %s\n", error.what());

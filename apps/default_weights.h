@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace ps::apps {
+
+/// @brief A file of weights that comes with the program: from its install, else from the source
+/// tree it was built from. Throws ps::Error that names both places when it is in neither.
+/// @param name  "depth.safetensors"
+std::filesystem::path default_weights(const std::string& name);
+
+}  // namespace ps::apps

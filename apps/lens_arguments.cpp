@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/lens_arguments.h"
+
+#include "apps/program.h"
+#include "io/intrinsics_file.h"
+
+namespace ps::apps {
+
+void LensArguments::add_to(CLI::App& verb) {
+  auto* file = verb.add_option("--intrinsics", intrinsics,
+                               "Lens: Open3D JSON, COLMAP cameras.txt or 3x3 text")
+                   ->type_name("FILE");
+  verb.add_option("--fov", fov,
+                  "Lens: horizontal field of view in degrees (default: from EXIF, else 60)")
+      ->type_name("DEG")
+      ->check(in_range(1, 179))
+      ->excludes(file)
+      ->default_str("");
+}
+
+PhotoLens choose_lens(const LensArguments& arguments, const Photo& photo, const std::string& name,
+                      const Context& context) {
+  constexpr double kDefaultFov = 60;
+  const int width = photo.color.cols, height = photo.color.rows;
+  if (!arguments.intrinsics.empty()) {
+    return {read_intrinsics(arguments.intrinsics, width, height), "--intrinsics"};
+  }
+  if (arguments.fov != 0) return {intrinsics_from_fov(width, height, arguments.fov), "--fov"};
+  Intrinsics lens = intrinsics_from_fov(width, height, kDefaultFov);
+  if (photo.focal_px) {
+    lens.fx = lens.fy = *photo.focal_px;
+    check(lens, name + ": EXIF focal length");
+    context.detail("lens: the photo's EXIF focal length");
+    return {lens, "EXIF"};
+  }
+  context.say("lens: 60 degrees across, as the photo does not say; --intrinsics or --fov does");
+  return {lens, "default"};
+}
+
+Json to_json(const PhotoLens& lens) {
+  Json json = to_json(lens.intrinsics);
+  json["from"] = lens.from;
+  return json;
+}
+
+}  // namespace ps::apps
