@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The incremental sampler at the published widths: against whole forwards, against the number of
 // completions and of missing cells. See tests/bench/README.md.
+#include <sys/resource.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -57,7 +59,7 @@ Timed time_sampler(const models::PixelCnn& net, int cells, int completions) {
 }
 
 void print(const char* what, int cells, int completions, const Timed& timed) {
-  std::printf("%-10s %4d cells, %4d completions: %7.3f s  %6.0f MiB\n", what, cells, completions,
+  std::printf("%-14s %4d cells, %4d completions: %7.3f s  %6.0f MiB\n", what, cells, completions,
               timed.seconds, timed.mib);
 }
 
@@ -105,21 +107,38 @@ Json whole_view() {
   }
   cv::Mat1b background(kSide, kSide, std::uint8_t{0});
   background(cv::Rect(kSide - 112, 0, 112, kSide)) = 1;
+  struct Way {
+    int samples, refined;
+    bool region;
+    const char* name;
+  };
+  using Screen = outpaint::OutpaintOptions::Screen;
+  const std::pair<Way, Screen> ways[] = {
+      {{1, 0, true, "one completion"}, Screen::unrefined},
+      {{50, 0, false, "whole pictures, all refined"}, Screen::unrefined},
+      {{50, 0, true, "region, all refined"}, Screen::unrefined},
+      {{50, 8, false, "whole pictures, best 8 before refinement"}, Screen::unrefined},
+      {{50, 8, true, "region, best 8 before refinement"}, Screen::unrefined},
+      {{50, 8, true, "region, likeliest 8"}, Screen::likelihood},
+  };
   Json rows = Json::array();
-  for (const auto& [samples, refined] : {std::pair(1, 0), std::pair(50, 8), std::pair(50, 0)}) {
+  painter.run(projection, background, {});  // memory is there afterwards
+  for (const auto& [way, screen] : ways) {
     outpaint::OutpaintOptions options;
-    options.samples = samples;
-    options.refine_best = refined;
-    outpaint::Outpainted result;
+    options.samples = way.samples;
+    options.refine_best = way.refined;
+    options.region = way.region;
+    options.screen = screen;
+    outpaint::OutpaintReport r;
     const double seconds =
-        fastest(1, [&] { result = painter.run(projection, background, options); });
-    const outpaint::OutpaintReport& r = result.report;
+        fastest(1, [&] { r = painter.run(projection, background, options).report; });
     std::printf(
-        "one view, %2d completions, %2d refined: %6.2f s (encode %.3f, sample %.3f, decode %.3f, "
+        "%-40s %2d completions, %2d refined: %6.2f s (encode %.3f, sample %.3f, decode %.3f, "
         "refine %.3f, score %.3f)\n",
-        samples, r.refined, seconds, r.encode_seconds, r.sample_seconds, r.decode_seconds,
-        r.refine_seconds, r.score_seconds);
-    rows.push_back({{"completions", samples},
+        way.name, way.samples, r.refined, seconds, r.encode_seconds, r.sample_seconds,
+        r.decode_seconds, r.refine_seconds, r.score_seconds);
+    rows.push_back({{"way", way.name},
+                    {"completions", way.samples},
                     {"refined", r.refined},
                     {"seconds", seconds},
                     {"encode", r.encode_seconds},
@@ -177,26 +196,47 @@ Json screens() {
           {"unrefined", by_unrefined}};
 }
 
-void run(const std::string& json_file) {
+double peak_memory_mib() {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+/// A process that samples and does nothing else, so that its peak memory is the sampler's.
+void memory_of(int completions) {
+  const models::PixelCnn net(models::random_pixel_cnn());
+  const outpaint::Order order = right_side(450);
+  const double before = peak_memory_mib();
+  outpaint::Sampler sampler(net, order, some_codes());
+  sampler.sample(0, completions);
+  std::printf("450 cells, %d completions: peak %.0f MiB, %.0f of them before it began\n",
+              completions, peak_memory_mib(), before);
+}
+
+void run(const std::string& json_file, const std::string& only) {
+  const auto wanted = [&](const char* part) { return only.empty() || only == part; };
   const Peak blas = peak_of_openblas(), eigen = peak_of_eigen();
   const Peak& peak = blas.gflops > eigen.gflops ? blas : eigen;
   std::printf("sgemm 2048^3, %s: %.0f GFLOP/s, %d threads\n", peak.name.c_str(), peak.gflops,
               threads());
   Json json = {{"sgemm", peak.name}, {"sgemm_gflops", peak.gflops}, {"threads", threads()}};
   const models::PixelCnn net(models::random_pixel_cnn());
-  json["headline"] = against_whole_forwards(net, kReferencePeak / peak.gflops);
-  for (const int completions : {1, 2, 5, 10, 20, 50, 100, 200}) {
-    const Timed timed = time_sampler(net, 450, completions);
-    print("by N", 450, completions, timed);
-    json["by_completions"].push_back(row(450, completions, timed));
+  if (wanted("headline")) {
+    json["headline"] = against_whole_forwards(net, kReferencePeak / peak.gflops);
   }
-  for (const int cells : {0, 1, 10, 32, 64, 128, 256, 450, 700, 1024}) {
-    const Timed timed = time_sampler(net, cells, 50);
-    print("by cells", cells, 50, timed);
-    json["by_cells"].push_back(row(cells, 50, timed));
+  const auto time = [&](const char* part, int cells, int completions) {
+    const Timed timed = time_sampler(net, cells, completions);
+    print(part, cells, completions, timed);
+    json[part].push_back(row(cells, completions, timed));
+  };
+  if (wanted("by_completions")) {
+    for (const int n : {1, 2, 5, 10, 20, 50, 100, 200, 500, 1000}) time("by_completions", 450, n);
   }
-  json["whole_view"] = whole_view();
-  json["screens"] = screens();
+  if (wanted("by_cells")) {
+    for (const int n : {0, 1, 10, 32, 64, 128, 256, 450, 700, 1024}) time("by_cells", n, 50);
+  }
+  if (wanted("whole_view")) json["whole_view"] = whole_view();
+  if (wanted("screens")) json["screens"] = screens();
   if (!json_file.empty()) std::ofstream(json_file) << json.dump(1) << '\n';
 }
 
@@ -205,8 +245,15 @@ void run(const std::string& json_file) {
 
 int main(int argc, char** argv) {
   CLI::App app("Times the sampler and a whole view.");
-  std::string json;
+  std::string json, only;
+  int memory = 0;
   app.add_option("--json", json, "File to write");
+  app.add_option("--only", only, "headline, by_completions, by_cells, whole_view or screens");
+  app.add_option("--memory", memory, "Only the peak memory of so many completions");
   CLI11_PARSE(app, argc, argv);
-  ps::bench::run(json);
+  if (memory > 0) {
+    ps::bench::memory_of(memory);
+  } else {
+    ps::bench::run(json, only);
+  }
 }
