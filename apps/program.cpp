@@ -70,6 +70,7 @@ int run(int argc, char** argv) {
   add_view(program, context);
   add_probe(program, context);
   add_weights(program, context);
+  add_train(program, context);
   program.require_subcommand(0, 1);
   try {
     program.parse(argc, argv);

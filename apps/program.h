@@ -33,5 +33,6 @@ void add_scene(CLI::App& program, const Context& context);
 void add_depth(CLI::App& program, const Context& context);
 void add_probe(CLI::App& program, const Context& context);
 void add_weights(CLI::App& program, const Context& context);
+void add_train(CLI::App& program, const Context& context);
 
 }  // namespace ps::apps

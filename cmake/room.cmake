@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# pixelsynth_room(NAME SOURCES ... LINK ... PCH ...): one library for one room of DESIGN.md.
+# pixelsynth_room(NAME [NOT_INSTALLED] SOURCES ... LINK ... PCH ...): one library for one room of DESIGN.md.
 # Its target is pixelsynth_NAME, known to others as pixelsynth::NAME.
 
 add_library(pixelsynth_flags INTERFACE)
@@ -28,7 +28,7 @@ target_include_directories(pixelsynth_pcl SYSTEM INTERFACE ${PCL_INCLUDE_DIRS})
 target_link_libraries(pixelsynth_pcl INTERFACE pcl_common pcl_kdtree pcl_search)
 
 function(pixelsynth_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;LINK;PCH" ${ARGN})
+  cmake_parse_arguments(ROOM "NOT_INSTALLED" "" "SOURCES;LINK;PCH" ${ARGN})
   set(target pixelsynth_${name})
   add_library(${target} STATIC ${ROOM_SOURCES})
   add_library(pixelsynth::${name} ALIAS ${target})
@@ -40,7 +40,9 @@ function(pixelsynth_room name)
   if(ROOM_PCH)
     target_precompile_headers(${target} PRIVATE ${ROOM_PCH})
   endif()
-  set_property(GLOBAL APPEND PROPERTY PIXELSYNTH_ROOMS ${target})
+  if(NOT ROOM_NOT_INSTALLED)
+    set_property(GLOBAL APPEND PROPERTY PIXELSYNTH_ROOMS ${target})
+  endif()
 endfunction()
 
 # pixelsynth_kernels(ROOM ISA SOURCES ... FLAGS ...): inner loops of a room for one instruction set, which they

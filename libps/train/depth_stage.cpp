@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <array>
+#include <cmath>
+
+#include "libps/train/depth_net.h"
+#include "libps/train/stage.h"
+
+namespace ps::train {
+namespace {
+
+constexpr double kMinZ = 0.25, kMaxZ = 25;  ///< canonical metres
+constexpr int kShippedWidth = 16;
+
+Tensor depth_of(const Tensor& raw) { return kMinZ + (kMaxZ - kMinZ) * torch::sigmoid(raw); }
+
+/// Where depth is known; ones and zeros.
+Tensor known(const Tensor& depth) { return (depth > 0).to(torch::kFloat32); }
+
+Tensor masked_mean(const Tensor& values, const Tensor& mask) {
+  return (values * mask).sum({1, 2, 3}) / mask.sum({1, 2, 3}).clamp_min(1);
+}
+
+/// Differences of neighbours of the errors of log depth, at four scales (Ranftl and others, MiDaS,
+/// TPAMI 2022, equation 11): edges where there are edges, none where there are none.
+Tensor gradient_loss(Tensor error, Tensor mask) {
+  Tensor sum = torch::zeros({error.size(0)}, error.options());
+  using torch::indexing::None;
+  using torch::indexing::Slice;
+  for (int scale = 0; scale < 4; ++scale) {
+    for (const int axis : {2, 3}) {
+      const auto n = error.size(axis) - 1;
+      const Tensor d = error.narrow(axis, 1, n) - error.narrow(axis, 0, n);
+      sum = sum + masked_mean(d.abs(), mask.narrow(axis, 1, n) * mask.narrow(axis, 0, n));
+    }
+    const Slice every_other(None, None, 2);
+    error = error.index({Slice(), Slice(), every_other, every_other});
+    mask = mask.index({Slice(), Slice(), every_other, every_other});
+  }
+  return sum;
+}
+
+/// The middle of the known values of each example.
+Tensor masked_median(const Tensor& values, const Tensor& mask) {
+  const Tensor marked = values.masked_fill(mask == 0, std::nan("")).flatten(1);
+  return std::get<0>(torch::nanmedian(marked, 1)).view({-1, 1, 1, 1});
+}
+
+class DepthStage : public Stage {
+ public:
+  DepthStage(const TrainOptions& options, torch::Device device)
+      : net_(options.width > 0 ? options.width : kShippedWidth, options.seed),
+        adam_(prepared(net_, device), {}) {}
+
+  StageDefaults defaults() const override { return {8, 12000, 1.5e-3}; }
+
+  Values step(const Batch& batch, torch::Generator, double learning_rate) override {
+    const Tensor mask = known(batch.depth);
+    const Tensor target = torch::log(batch.depth.clamp(kMinZ, kMaxZ));
+    const Tensor error = (torch::log(depth_of(net_.forward(batch.color, true))) - target) * mask;
+    // Scale is half a guess: most of a common factor is forgiven.
+    const Tensor common = masked_mean(error, mask).view({-1, 1, 1, 1});
+    const Tensor value = masked_mean((error - 0.7 * common).abs(), mask).mean();
+    const Tensor gradient = gradient_loss(error, mask).mean();
+    adam_.zero_gradients();
+    (value + 0.5 * gradient).backward();
+    const bool taken = adam_.step(learning_rate);
+    return {{"log_l1", value.item<double>()},
+            {"gradient", gradient.item<double>()},
+            {"skipped", taken ? 0 : 1}};
+  }
+
+  Values test(const Batch& batch) override {
+    const torch::NoGradGuard guard;
+    const Tensor mask = known(batch.depth);
+    const Tensor depth = depth_of(net_.forward(batch.color, false));
+    const Tensor scale = masked_median(batch.depth, mask) / masked_median(depth, mask);
+    const Tensor truth = batch.depth.clamp_min(1e-3), scaled = depth * scale;
+    const Tensor ratio = torch::max(scaled / truth, truth / scaled);
+    const auto mean = [&](const Tensor& values) {
+      return masked_mean(values, mask).mean().item<double>();
+    };
+    return {{"abs_rel", mean((scaled - truth).abs() / truth)},
+            {"delta1", mean((ratio < 1.25).to(torch::kFloat32))},
+            {"abs_rel_raw", mean((depth - truth).abs() / truth)}};
+  }
+
+  std::vector<std::vector<Tensor>> pictures(const Batch& batch) override {
+    const torch::NoGradGuard guard;
+    const Tensor depth = depth_of(net_.forward(batch.color, false));
+    const auto grey = [](const Tensor& z) {
+      const Tensor inverse = z.clamp_min(1e-3).reciprocal();
+      const double most =
+          torch::quantile(inverse.masked_select(z > 0).slice(0, 0, 100000), .98).item<double>();
+      return (inverse * (z > 0) / most * 2 - 1).clamp(-1, 1).expand({3, -1, -1});
+    };
+    std::vector<std::vector<Tensor>> rows;
+    for (std::int64_t i = 0; i < batch.color.size(0); ++i) {
+      rows.push_back({batch.color[i], grey(batch.depth[i]), grey(depth[i])});
+    }
+    return rows;
+  }
+
+  std::vector<Trained> networks() override { return {{&net_.parameters, &adam_}}; }
+  std::map<std::string, std::string> metadata() const override {
+    return {{"min_z", std::to_string(kMinZ)},
+            {"max_z", std::to_string(kMaxZ)},
+            {"canonical_focal", "1"}};
+  }
+
+ private:
+  static Parameters& prepared(DepthNet& net, torch::Device device) {
+    net.parameters.to(device);
+    return net.parameters;
+  }
+
+  DepthNet net_;
+  Adam adam_;
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> make_depth_stage(const TrainOptions& options, torch::Device device) {
+  return std::make_unique<DepthStage>(options, device);
+}
+
+}  // namespace ps::train

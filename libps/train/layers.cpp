@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/train/layers.h"
+
+#include <cmath>
+
+namespace ps::train {
+
+void add_convolution(Parameters& p, const std::string& name, int in, int out, int kernel,
+                     double gain, bool bias) {
+  p.normal(name + ".weight", {out, in, kernel, kernel},
+           gain * std::sqrt(2.0 / (in * kernel * kernel)));
+  if (bias) p.constant(name + ".bias", {out}, 0);
+}
+
+void add_transposed(Parameters& p, const std::string& name, int in, int out, double gain) {
+  // Of 4x4 taps at stride 2, four meet in a pixel.
+  p.normal(name + ".weight", {in, out, 4, 4}, gain * std::sqrt(2.0 / (in * 4)));
+  p.constant(name + ".bias", {out}, 0);
+}
+
+void add_batch_norm(Parameters& p, const std::string& name, int channels) {
+  p.constant(name + ".weight", {channels}, 1);
+  p.constant(name + ".bias", {channels}, 0);
+  p.state(name + ".running_mean", torch::zeros({channels}));
+  p.state(name + ".running_var", torch::ones({channels}));
+}
+
+void add_normed(Parameters& p, const std::string& name, int in, int out) {
+  p.normal(name + ".weight_v", {out, in}, 1);
+  p.constant(name + ".weight_g", {out, 1}, 1);
+  p.constant(name + ".bias", {out}, 0);
+}
+
+Tensor convolution(const Parameters& p, const std::string& name, const Tensor& x, int stride,
+                   int padding) {
+  const auto bias = p.trained().find(name + ".bias");
+  return torch::conv2d(x, p[name + ".weight"], bias == p.trained().end() ? Tensor() : bias->second,
+                       stride, padding);
+}
+
+Tensor transposed(const Parameters& p, const std::string& name, const Tensor& x) {
+  return torch::conv_transpose2d(x, p[name + ".weight"], p[name + ".bias"], 2, 1);
+}
+
+Tensor batch_norm(const Parameters& p, const std::string& name, const Tensor& x, bool training) {
+  return torch::batch_norm(x, p[name + ".weight"], p[name + ".bias"], p[name + ".running_mean"],
+                           p[name + ".running_var"], training, 0.1, 1e-5, false);
+}
+
+Tensor normed(const Parameters& p, const std::string& name, const Tensor& x) {
+  const Tensor& v = p[name + ".weight_v"];
+  const Tensor weight = v * (p[name + ".weight_g"] / v.norm(2, {1}, true));
+  // A 1x1 convolution stays in oneDNN's threads; a matrix product would wake the BLAS's own.
+  return torch::conv2d(x, weight.unsqueeze(2).unsqueeze(3), p[name + ".bias"]);
+}
+
+Tensor upsample_2x(const Tensor& x) {
+  return torch::upsample_bilinear2d(x, {2 * x.size(2), 2 * x.size(3)}, false);
+}
+
+}  // namespace ps::train

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Internal to this room: layers of networks in training. Each has a function that makes its tensors
+// in a Parameters, and one that computes.
+#pragma once
+
+#include <string>
+
+#include "libps/train/parameters.h"
+
+namespace ps::train {
+
+/// @param gain  of the size of signals; 1 keeps it where ReLU cuts off half of them (He and others,
+/// ICCV 2015)
+void add_convolution(Parameters& p, const std::string& name, int in, int out, int kernel,
+                     double gain = 1, bool bias = true);
+void add_transposed(Parameters& p, const std::string& name, int in, int out, double gain = 1);
+void add_batch_norm(Parameters& p, const std::string& name, int channels);
+/// @brief A linear layer with weight norm: `.weight_v`, `.weight_g`, `.bias`.
+void add_normed(Parameters& p, const std::string& name, int in, int out);
+
+Tensor convolution(const Parameters& p, const std::string& name, const Tensor& x, int stride,
+                   int padding);
+Tensor transposed(const Parameters& p, const std::string& name, const Tensor& x);
+/// @brief By the batch in training, which also moves the running mean and variance; else by those.
+Tensor batch_norm(const Parameters& p, const std::string& name, const Tensor& x, bool training);
+/// @brief On the channels of every pixel.
+Tensor normed(const Parameters& p, const std::string& name, const Tensor& x);
+
+Tensor upsample_2x(const Tensor& x);  ///< bilinear, align_corners = false
+
+}  // namespace ps::train

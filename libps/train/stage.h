@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Internal to this room: what the stages of training have in common.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "libps/train/dataset.h"
+#include "libps/train/parameters.h"
+#include "libps/train/train.h"
+
+namespace ps::train {
+
+using Values = std::map<std::string, double>;
+
+/// How a stage is trained unless the caller says otherwise.
+struct StageDefaults {
+  int batch = 8;
+  std::int64_t steps = 10000;
+  double learning_rate = 1e-3;
+};
+
+class Stage {
+ public:
+  virtual ~Stage() = default;
+
+  virtual StageDefaults defaults() const = 0;
+  virtual Augmentation augmentation() const { return {true, true, true}; }
+  /// Whether examples are second views of pairs, with their splats and orders.
+  virtual bool pairs() const { return false; }
+
+  /// @brief One step along the gradients of a batch.
+  /// @return the losses, summed up by name
+  virtual Values step(const Batch& batch, torch::Generator generator, double learning_rate) = 0;
+
+  /// @brief Scores of a batch that is not trained on; means over its examples.
+  virtual Values test(const Batch& batch) = 0;
+  /// @brief Rows of pictures [3, h, w] in [-1,1], one for each of the first examples of a batch.
+  virtual std::vector<std::vector<Tensor>> pictures(const Batch& batch) = 0;
+
+  struct Trained {
+    Parameters* parameters;
+    Adam* adam;
+    bool shipped = true;  ///< whether it goes into the weights file
+  };
+  virtual std::vector<Trained> networks() = 0;
+  /// @brief What a reader of the weights has to know.
+  virtual std::map<std::string, std::string> metadata() const { return {}; }
+};
+
+std::unique_ptr<Stage> make_depth_stage(const TrainOptions& options, torch::Device device);
+std::unique_ptr<Stage> make_pixelcnn_stage(const TrainOptions& options, torch::Device device);
+std::unique_ptr<Stage> make_refine_stage(const TrainOptions& options, torch::Device device);
+std::unique_ptr<Stage> make_vqvae_stage(const TrainOptions& options, torch::Device device);
+
+}  // namespace ps::train
