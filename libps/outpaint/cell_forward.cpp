@@ -114,8 +114,8 @@ struct CellForward::Step {
     nn::positional_norm(x, x);
   }
 
-  /// @param elu   concat_elu of x, kept in `store`
-  /// @param skip  concat_elu of the other input, or null
+  /// @param store  keeps concat_elu of x
+  /// @param skip   concat_elu of the other input, or null
   void block(const models::GatedBlock& layers, const Store& store, const nn::TensorView* skip) {
     const nn::Workspace::Scope scope(lane.workspace);
     const int f = x.shape.channels;
