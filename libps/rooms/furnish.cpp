@@ -390,13 +390,14 @@ RoomKind pick_kind(Dice& d) {
 Sky make_sky(Dice& d) {
   Sky s;
   s.seed = d.bits();
-  const bool night = d.chance(0.1f);
+  const bool night = d.chance(0.08f);
   const float bright = night ? 0.01f : d.range(1.2f, 5);
   s.zenith = hsv(d.range(0.55f, 0.62f), d.range(0.1f, 0.55f), 0.85f) * bright;
   s.horizon = hsv(d.range(0.05f, 0.65f), d.range(0, 0.2f), 0.95f) * bright;
   s.ground = hsv(d.range(0.08f, 0.35f), d.range(0.05f, 0.4f), d.range(0.3f, 0.6f)) * bright;
   s.walls = hsv(d.range(0, 0.15f), d.range(0.05f, 0.4f), d.range(0.4f, 0.85f)) * bright * 0.8f;
-  s.leaves = hsv(d.range(0.2f, 0.35f), d.range(0.3f, 0.6f), d.range(0.2f, 0.5f)) * bright;
+  s.leaves =
+      hsv(d.range(0.17f, 0.33f), d.range(0.2f, 0.5f), d.range(0.2f, 0.45f)) * (0.5f * bright);
   s.skyline = d.chance(0.3f) ? 0.02f : d.range(0.1f, 0.9f);
   const float azimuth = d.range(0, 6.2831853f), slope = d.range(0.25f, 1.1f);
   s.sun_direction = normalized({std::cos(azimuth), slope, std::sin(azimuth)});
@@ -418,7 +419,7 @@ Style make_style(Set& set) {
   s.door = d.pick({pale, pale, wood, colored, s.trim});
   s.frame = d.pick({pale, pale, pale, wood, colored});
   s.metal = set.add(metal(d));
-  s.dark = set.add(plain(hsv(d.unit(), d.range(0, 0.1f), d.range(0.05f, 0.2f)), 0.02f));
+  s.dark = set.add(plain(hsv(any_hue(d), d.range(0, 0.1f), d.range(0.05f, 0.2f)), 0.02f));
   s.white = set.add(plain(srgb(0.9f, 0.9f, 0.88f)));
   return s;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "libps/rooms/light.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ps::rooms {
@@ -9,7 +10,9 @@ namespace {
 constexpr float kPi = 3.14159265f;
 constexpr int kDirections = 3 * kRays;  ///< rays of a probe
 constexpr int kBounces = 3;
-constexpr float kFaint = 0.003f;  ///< irradiance that nobody sees
+constexpr int kMostEmitters = 48;
+constexpr std::size_t kOwnRays = 2;  ///< groups of lights that are asked for certain
+constexpr float kFaint = 0.003f;     ///< irradiance that nobody sees
 
 /// What an emitter would send if nothing stood between, from its middle.
 float rate(const Emitter& e, Vec p, Vec n) {
@@ -22,23 +25,35 @@ float rate(const Emitter& e, Vec p, Vec n) {
          (d2 + dot(e.half_u, e.half_u) + dot(e.half_v, e.half_v));
 }
 
+/// Where a shadow ray goes, and what comes from there if nothing stands between.
 struct Sample {
   Vec to;
   Vec irradiance;
 };
 
-Sample sample_group(const LightGroup& g, const Lit& l) {
-  const int n = static_cast<int>(g.emitters.size());
-  float rates[64], total = 0;
-  const int used = std::min(n, 64);
-  for (int i = 0; i < used; ++i) total += rates[i] = rate(g.emitters[i], l.position, l.normal);
-  if (total * luminance(g.radiance) < kFaint) return {};
-  float left = l.choice * total;
+/// What the emitters of a group would send to a place, one by one.
+struct Rates {
+  float of[kMostEmitters];
+  float total = 0;
+};
+
+Rates rates_of(const LightGroup& g, const Lit& l) {
+  Rates r;
+  const int n = static_cast<int>(std::min<std::size_t>(g.emitters.size(), kMostEmitters));
+  for (int i = 0; i < n; ++i) r.total += r.of[i] = rate(g.emitters[i], l.position, l.normal);
+  return r;
+}
+
+/// A random point of the group. `choice` in [0,1) picks the emitter.
+Sample sample_group(const LightGroup& g, const Lit& l, float choice) {
+  const Rates rates = rates_of(g, l);
+  const int used = static_cast<int>(std::min<std::size_t>(g.emitters.size(), kMostEmitters));
+  float left = choice * rates.total;
   int pick = 0;
-  while (pick + 1 < used && left >= rates[pick]) left -= rates[pick++];
+  while (pick + 1 < used && left >= rates.of[pick]) left -= rates.of[pick++];
   const Emitter& e = g.emitters[pick];
-  const float share = rates[pick] / total;
-  if (share <= 0) return {};
+  const float share = rates.of[pick] / rates.total;
+  if (!(share > 0)) return {};
   Vec to;
   float area;
   if (e.round) {
@@ -56,34 +71,30 @@ Sample sample_group(const LightGroup& g, const Lit& l) {
   return {to, g.radiance * std::min(area * at_surface * at_lamp / (d2 * share), kPi)};
 }
 
-}  // namespace
-
-void add_direct(const Scene& scene, Lit* lit) {
+/// One shadow ray for each place that has a sample.
+void add_samples(const Scene& scene, Lit* lit, const Sample* samples) {
   Rays rays;
-  for (const LightGroup& g : scene.lights) {
-    clear(rays);
-    Vec sent[kRays];
-    bool any = false;
-    for (int i = 0; i < kRays; ++i) {
-      if (!lit[i].on) continue;
-      const Sample s = sample_group(g, lit[i]);
-      if (luminance(s.irradiance) <= 0) continue;
-      sent[i] = s.irradiance;
-      set_ray(rays, i, lit[i].position, s.to, 0.97f);
-      any = true;
-    }
-    if (!any) continue;
-    scene.blocked(rays);
-    for (int i = 0; i < kRays; ++i) {
-      if (rays.reach[i] > 0) lit[i].irradiance += sent[i];
-    }
+  clear(rays);
+  bool any = false;
+  for (int i = 0; i < kRays; ++i) {
+    if (!lit[i].space || luminance(samples[i].irradiance) <= 0) continue;
+    set_ray(rays, i, lit[i].position, samples[i].to, 0.97f);
+    any = true;
   }
-  if (luminance(scene.sky.sun_irradiance) <= 0) return;
+  if (!any) return;
+  scene.blocked(rays);
+  for (int i = 0; i < kRays; ++i) {
+    if (rays.reach[i] > 0) lit[i].irradiance += samples[i].irradiance;
+  }
+}
+
+void add_sun(const Scene& scene, Lit* lit) {
+  Rays rays;
   clear(rays);
   bool any = false;
   const Vec sun = scene.sky.sun_direction;
   for (int i = 0; i < kRays; ++i) {
-    if (!lit[i].on || dot(lit[i].normal, sun) <= 0) continue;
+    if (!lit[i].space || !lit[i].space->sunny || dot(lit[i].normal, sun) <= 0) continue;
     any = true;
     const Vec spread{(lit[i].s - 0.5f) * 0.02f, 0, (lit[i].t - 0.5f) * 0.02f};
     set_ray(rays, i, lit[i].position, sun + spread, 100);
@@ -95,6 +106,58 @@ void add_direct(const Scene& scene, Lit* lit) {
       lit[i].irradiance += scene.sky.sun_irradiance * dot(lit[i].normal, sun);
     }
   }
+}
+
+}  // namespace
+
+void add_direct(const Scene& scene, Lit* lit) {
+  // How much each group would give, for each place and in all.
+  struct Group {
+    int index;
+    float sum = 0;
+    float to[kRays] = {};
+  };
+  std::vector<Group> groups;
+  for (std::size_t g = 0; g < scene.lights.size(); ++g) {
+    Group group{static_cast<int>(g)};
+    for (int i = 0; i < kRays; ++i) {
+      if (!lit[i].space || !lit[i].space->lit_by[g]) continue;
+      const float r = rates_of(scene.lights[g], lit[i]).total * luminance(scene.lights[g].radiance);
+      if (r > kFaint) group.sum += group.to[i] = r;
+    }
+    if (group.sum > 0) groups.push_back(group);
+  }
+  std::sort(groups.begin(), groups.end(),
+            [](const Group& a, const Group& b) { return a.sum > b.sum; });
+  // The strongest have rays of their own; of the others each place asks one.
+  const std::size_t own = groups.size() <= kOwnRays + 1 ? groups.size() : kOwnRays;
+  for (std::size_t g = 0; g < own; ++g) {
+    Sample samples[kRays];
+    for (int i = 0; i < kRays; ++i) {
+      if (groups[g].to[i] > 0) {
+        samples[i] = sample_group(scene.lights[groups[g].index], lit[i], lit[i].choice);
+      }
+    }
+    add_samples(scene, lit, samples);
+  }
+  if (own < groups.size()) {
+    Sample samples[kRays];
+    for (int i = 0; i < kRays; ++i) {
+      float total = 0;
+      for (std::size_t g = own; g < groups.size(); ++g) total += groups[g].to[i];
+      if (total <= 0) continue;
+      float left = lit[i].choice * total;
+      std::size_t pick = own;
+      while (pick + 1 < groups.size() && left >= groups[pick].to[i]) left -= groups[pick++].to[i];
+      const float share = groups[pick].to[i] / total;
+      if (share <= 0) continue;
+      samples[i] = sample_group(scene.lights[groups[pick].index], lit[i],
+                                std::min(left / groups[pick].to[i], 0.999f));
+      samples[i].irradiance *= 1 / share;
+    }
+    add_samples(scene, lit, samples);
+  }
+  if (luminance(scene.sky.sun_irradiance) > 0) add_sun(scene, lit);
 }
 
 namespace {
@@ -128,7 +191,8 @@ void lay_probes(Space& s) {
 }
 
 /// Sixteen rays of a probe; @return how many saw the back of something.
-int cast(const Scene& scene, Vec from, int probe, int packet, std::vector<Met>& met) {
+int cast(const Scene& scene, const Space& space, Vec from, int probe, int packet,
+         std::vector<Met>& met) {
   Rays rays;
   clear(rays);
   for (int i = 0; i < kRays; ++i) {
@@ -145,7 +209,7 @@ int cast(const Scene& scene, Vec from, int probe, int packet, std::vector<Met>& 
     if (rays.face[i] < 0) continue;
     surfaces[i] = surface_of(scene, rays, i);
     behind += rays.reach[i] < 0.06f ? 1 : 0;
-    lit[i].on = true;
+    lit[i].space = &space;
     lit[i].position = surfaces[i].position + surfaces[i].flat * 1e-3f;
     lit[i].normal = surfaces[i].flat;
     lit[i].choice = hash(probe, i, 1);
@@ -154,7 +218,7 @@ int cast(const Scene& scene, Vec from, int probe, int packet, std::vector<Met>& 
   }
   add_direct(scene, lit);
   for (int i = 0; i < kRays; ++i) {
-    if (!lit[i].on) continue;
+    if (!lit[i].space) continue;
     const Surface& s = surfaces[i];
     const Vec d{rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]};
     met.push_back({probe, d, s.position, s.flat, albedo(*s.material, *s.pictures, s.u, s.v, 0.5f),
@@ -163,7 +227,8 @@ int cast(const Scene& scene, Vec from, int probe, int packet, std::vector<Met>& 
   return behind;
 }
 
-void bake_space(const Scene& scene, Space& space, std::vector<float>* seen) {
+void bake_space(const Scene& scene, Space& space, std::vector<Vec>* seen,
+                std::vector<Vec>* lights) {
   lay_probes(space);
   Probes& p = space.probes;
   const int count = static_cast<int>(p.cubes.size());
@@ -174,7 +239,7 @@ void bake_space(const Scene& scene, Space& space, std::vector<float>* seen) {
     int behind = 0;
     const Vec from = probe_place(p, probe);
     for (int packet = 0; packet < kDirections / kRays; ++packet)
-      behind += cast(scene, from, probe, packet, met);
+      behind += cast(scene, space, from, probe, packet, met);
     inside[probe] = behind > kDirections / 2;
   }
   for (int bounce = 0; bounce < kBounces; ++bounce) {
@@ -187,7 +252,10 @@ void bake_space(const Scene& scene, Space& space, std::vector<float>* seen) {
       for (int f = 0; f < 6; ++f) {
         if (d[f] > 0) next.cubes[m.probe][f] += out * (d[f] * 4 * kPi / kDirections);
       }
-      if (seen && bounce == kBounces - 1) seen->push_back(luminance(out));
+      if (seen && bounce == kBounces - 1) {
+        seen->push_back(m.albedo);
+        lights->push_back((m.direct + p.irradiance(m.position, m.normal)) * (1 / kPi));
+      }
     }
     std::array<Vec, 6> mean{};
     int outside = 0;
@@ -204,18 +272,65 @@ void bake_space(const Scene& scene, Space& space, std::vector<float>* seen) {
   }
 }
 
+/// Finds which lights reach a space at all, by random rays.
+void find_lights(const Scene& scene, Space& space) {
+  space.lit_by.assign(scene.lights.size(), false);
+  space.sunny = false;
+  const Vec size = space.high - space.low;
+  for (int packet = 0; packet < 24; ++packet) {
+    Lit lit[kRays];
+    for (int i = 0; i < kRays; ++i) {
+      const int k = packet * kRays + i;
+      lit[i].space = &space;
+      lit[i].position = space.low + size * Vec{hash(k, 1, 7), hash(k, 2, 7), hash(k, 3, 7)};
+      lit[i].s = hash(k, 4, 7);
+      lit[i].t = hash(k, 5, 7);
+    }
+    for (std::size_t g = 0; g < scene.lights.size(); ++g) {
+      if (space.lit_by[g]) continue;
+      Sample samples[kRays];
+      for (int i = 0; i < kRays; ++i) {
+        lit[i].normal =
+            normalized((scene.lights[g].low + scene.lights[g].high) * 0.5f - lit[i].position);
+        lit[i].irradiance = {};
+        samples[i] = sample_group(scene.lights[g], lit[i], lit[i].s);
+      }
+      add_samples(scene, lit, samples);
+      for (const Lit& l : lit) {
+        if (luminance(l.irradiance) > kFaint) space.lit_by[g] = true;
+      }
+    }
+    if (space.sunny || luminance(scene.sky.sun_irradiance) <= 0) continue;
+    space.sunny = true;  // so that the sun is asked
+    for (Lit& l : lit) {
+      l.normal = scene.sky.sun_direction;
+      l.irradiance = {};
+    }
+    add_sun(scene, lit);
+    space.sunny = false;
+    for (const Lit& l : lit) space.sunny |= luminance(l.irradiance) > 0;
+  }
+}
+
 }  // namespace
 
 void bake(Scene& scene) {
-  std::vector<float> seen;
+  for (Space& space : scene.spaces) find_lights(scene, space);
+  std::vector<Vec> seen, lights;
   for (std::size_t i = 0; i < scene.spaces.size(); ++i) {
-    bake_space(scene, scene.spaces[i], i == 0 ? &seen : nullptr);
+    bake_space(scene, scene.spaces[i], i == 0 ? &seen : nullptr, i == 0 ? &lights : nullptr);
   }
-  double sum = 0;
-  for (const float l : seen) sum += std::log(std::max(l, 1e-4f));
-  const float mean =
-      seen.empty() ? 0.2f : std::exp(static_cast<float>(sum / static_cast<double>(seen.size())));
-  scene.exposure = 0.2f / std::max(mean, 1e-3f);
+  const auto middle = [](const std::vector<Vec>& v) {
+    double sum = 0;
+    for (const Vec& c : v) sum += std::log(std::max(luminance(c), 1e-4f));
+    return v.empty() ? 1.f : std::exp(static_cast<float>(sum / static_cast<double>(v.size())));
+  };
+  scene.middle_light = middle(lights);
+  for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = seen[i] * scene.evened(lights[i]);
+  // As a photo: a white room may look bright, a dark one dark.
+  const float mean = middle(seen);
+  scene.exposure =
+      0.16f * std::pow(mean / 0.16f / scene.middle_light, 0.35f) / std::max(mean, 1e-4f);
 }
 
 }  // namespace ps::rooms

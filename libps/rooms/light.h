@@ -8,15 +8,16 @@ namespace ps::rooms {
 
 /// A place to be lit. A packet holds kRays of these.
 struct Lit {
-  bool on = false;
-  Vec position;  ///< a little above its surface
+  const Space* space = nullptr;  ///< it is in; null = no place
+  Vec position;                  ///< a little above its surface
   Vec normal;
   float choice = 0.5f, s = 0.5f, t = 0.5f;  ///< in [0,1): which lamp, and where on it
   Vec irradiance;                           ///< what came, added to
 };
 
-/// Adds the light that comes straight from lamps, windows and the sun: one shadow ray for each
-/// group of lights. Too little to be seen is left out.
+/// Adds the light that comes straight from lamps, windows and the sun: a shadow ray for each of the
+/// strongest groups of lights, one for a random group of the others. Too little to be seen is left
+/// out.
 void add_direct(const Scene& scene, Lit* lit);
 
 /// Fills the probes of all spaces with bounce light and sets the exposure.

@@ -17,21 +17,30 @@ Vec hsv(float hue, float saturation, float value) {
   return srgb(channel(5), channel(3), channel(1));
 }
 
+float any_hue(Dice& d) {
+  const float kind = d.unit();
+  if (kind < 0.4f) return d.range(0.02f, 0.15f);
+  if (kind < 0.65f) return d.range(0.53f, 0.66f);
+  if (kind < 0.8f) return d.range(0.2f, 0.45f);
+  if (kind < 0.9f) return d.range(0.97f, 1);
+  return d.unit();
+}
+
 Vec paint(Dice& d) {
   const float kind = d.unit();
-  if (kind < 0.38f) return hsv(d.range(0.05f, 0.2f), d.range(0, 0.06f), d.range(0.82f, 0.97f));
-  if (kind < 0.55f) return hsv(d.range(0.08f, 0.15f), d.range(0.08f, 0.25f), d.range(0.75f, 0.93f));
-  if (kind < 0.72f) return hsv(d.unit(), d.range(0, 0.06f), d.range(0.4f, 0.8f));
-  if (kind < 0.9f) return hsv(d.unit(), d.range(0.1f, 0.35f), d.range(0.55f, 0.9f));
-  return hsv(d.unit(), d.range(0.3f, 0.8f), d.range(0.2f, 0.75f));
+  if (kind < 0.42f) return hsv(d.range(0.05f, 0.2f), d.range(0, 0.06f), d.range(0.8f, 0.97f));
+  if (kind < 0.6f) return hsv(d.range(0.08f, 0.15f), d.range(0.08f, 0.25f), d.range(0.7f, 0.93f));
+  if (kind < 0.8f) return hsv(any_hue(d), d.range(0, 0.07f), d.range(0.35f, 0.8f));
+  if (kind < 0.93f) return hsv(any_hue(d), d.range(0.1f, 0.35f), d.range(0.5f, 0.9f));
+  return hsv(any_hue(d), d.range(0.3f, 0.7f), d.range(0.2f, 0.7f));
 }
 
 Vec any_color(Dice& d) {
   const float kind = d.unit();
-  if (kind < 0.25f) return hsv(d.unit(), d.range(0, 0.08f), d.range(0.75f, 0.95f));
-  if (kind < 0.5f) return hsv(d.unit(), d.range(0, 0.1f), d.range(0.08f, 0.3f));
-  if (kind < 0.75f) return hsv(d.unit(), d.range(0.15f, 0.5f), d.range(0.3f, 0.8f));
-  return hsv(d.unit(), d.range(0.5f, 0.95f), d.range(0.25f, 0.85f));
+  if (kind < 0.3f) return hsv(any_hue(d), d.range(0, 0.08f), d.range(0.7f, 0.95f));
+  if (kind < 0.58f) return hsv(any_hue(d), d.range(0, 0.15f), d.range(0.08f, 0.35f));
+  if (kind < 0.85f) return hsv(any_hue(d), d.range(0.15f, 0.5f), d.range(0.25f, 0.8f));
+  return hsv(any_hue(d), d.range(0.5f, 0.9f), d.range(0.25f, 0.85f));
 }
 
 Material plain(Vec color, float gloss) {
@@ -108,15 +117,15 @@ Material floor_material(Dice& d, RoomKind kind) {
   } else if (pick < 0.85f && !wet) {
     m.pattern = d.chance(0.5f) ? Pattern::carpet : Pattern::carpet_tiles;
     m.scale = 0.5f;
-    m.color = d.chance(0.5f) ? hsv(d.unit(), d.range(0, 0.15f), d.range(0.2f, 0.6f))
-                             : hsv(d.unit(), d.range(0.2f, 0.75f), d.range(0.2f, 0.6f));
+    m.color = d.chance(0.5f) ? hsv(any_hue(d), d.range(0, 0.15f), d.range(0.2f, 0.6f))
+                             : hsv(any_hue(d), d.range(0.2f, 0.75f), d.range(0.2f, 0.6f));
     m.second = m.color * d.range(0.4f, 1.8f);
     m.amount = d.range(0.3f, 1);
     m.gloss = 0;
   } else {
     m.pattern = Pattern::speckle;
     m.scale = d.range(0.01f, 0.05f);
-    m.color = hsv(d.unit(), d.range(0, 0.3f), d.range(0.25f, 0.85f));
+    m.color = hsv(any_hue(d), d.range(0, 0.3f), d.range(0.25f, 0.85f));
     m.second = m.color * d.range(0.5f, 1.4f);
     m.gloss = d.range(0, 0.05f);
   }
@@ -196,7 +205,10 @@ struct Canvas {
   }
 };
 
-Vec ink(Dice& d) { return {d.unit(), d.unit(), d.unit()}; }
+Vec ink(Dice& d) {
+  const Vec c = any_color(d);
+  return {srgb_from_linear(c.x), srgb_from_linear(c.y), srgb_from_linear(c.z)};
+}
 
 /// Something like a photo: sky, ground, a few bodies.
 void scenery(Dice& d, Canvas& c, int x0, int y0, int x1, int y1) {

@@ -84,6 +84,11 @@ void Scene::blocked(Rays& rays) const {
   }
 }
 
+Vec Scene::evened(Vec light) const {
+  light += Vec{1, 1, 1} * (0.02f * middle_light);  // no place is quite dark
+  return light * std::pow(luminance(light) / middle_light, -evening);
+}
+
 bool Scene::inside_thing(Vec p) const {
   for (const auto& t : things) {
     if (p.x > t[0].x && p.y > t[0].y && p.z > t[0].z && p.x < t[1].x && p.y < t[1].y &&

@@ -64,6 +64,8 @@ struct Space {
   float height = 2.5f;
   Vec low, high;
   Probes probes;
+  std::vector<bool> lit_by;  ///< for each group of lights
+  bool sunny = false;
 
   bool holds(Vec p, float grow = 0) const;
 };
@@ -91,6 +93,12 @@ struct Scene {
   std::shared_ptr<const FurnitureStore> furniture;
   Sky sky;
   float exposure = 1;
+  float middle_light = 1;  ///< irradiance / pi that is left as it is: cameras lift what is darker
+  float evening = 0.35f;   ///< by this power of the ratio
+
+  /// Light as the camera evens it out, from irradiance / pi. A function of the place alone, so that
+  /// views agree.
+  Vec evened(Vec light) const;
   bool mirrors = false;
   std::vector<std::array<Vec, 2>> things;  ///< bounds of what nobody can be inside of
 

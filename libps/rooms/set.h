@@ -78,6 +78,7 @@ struct Set {
 // palette.cpp: colours and materials as buildings have them.
 Vec srgb(float r, float g, float b);
 Vec hsv(float hue, float saturation, float value);  ///< linear colour; all in [0,1]
+float any_hue(Dice& d);                             ///< warm and blue ones are commonest
 Vec paint(Dice& d);                                 ///< of a wall: mostly white, grey, cream
 Vec any_color(Dice& d);                             ///< of things
 Material plain(Vec color, float gloss = 0);

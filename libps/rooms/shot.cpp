@@ -81,6 +81,9 @@ class Shooter {
     reflect();
     smooth(f_.light, 0);
     smooth(f_.mirror, 0.04f);
+    for (std::size_t i = 0; i < f_.light.size(); ++i) {
+      if (f_.pixels[i].material) f_.light[i] = scene_.evened(f_.light[i]);
+    }
     std::vector<Vec> colors(f_.pixels.size());
     for (std::size_t i = 0; i < colors.size(); ++i)
       colors[i] = shown(radiance(f_.pixels[i], i, f_.pixels[i].albedo));
@@ -148,7 +151,7 @@ class Shooter {
       const Pixel& p = f_.pixels[index(x, y)];
       if (!p.material) continue;
       any = true;
-      lit[k].on = true;
+      lit[k].space = &scene_.space_at(p.position);
       lit[k].position = p.position + p.flat * 2e-3f;
       lit[k].normal = p.normal;
       const int o = kOrder[k];
@@ -165,14 +168,14 @@ class Shooter {
     scene_.nearest(rays);
     add_direct(scene_, lit);
     for (int k = 0; k < kRays; ++k) {
-      if (!lit[k].on) continue;
+      if (!lit[k].space) continue;
       const Pixel& p = f_.pixels[index(x0 + k % kSide, y0 + k / kSide)];
       float open = 1;
       if (rays.face[k] >= 0) {
         const float near = 1 - rays.reach[k] / kAmbientReach;
         open = 1 - 0.9f * near * std::sqrt(near);
       }
-      const Vec ambient = scene_.space_at(p.position).probes.irradiance(p.position, p.normal);
+      const Vec ambient = lit[k].space->probes.irradiance(p.position, p.normal);
       f_.light[index(x0 + k % kSide, y0 + k / kSide)] =
           (lit[k].irradiance + ambient * open) * (1 / kPi);
     }
@@ -206,7 +209,7 @@ class Shooter {
       for (int k = 0; k < count; ++k) {
         if (rays.face[k] < 0) continue;
         const Surface s = surface_of(scene_, rays, k);
-        lit[k].on = true;
+        lit[k].space = &scene_.space_at(s.position);
         lit[k].position = s.position + s.flat * 2e-3f;
         lit[k].normal = s.normal;
         colors[k] = albedo(*s.material, *s.pictures, s.u, s.v, 0.02f);
@@ -215,13 +218,12 @@ class Shooter {
       add_direct(scene_, lit);
       for (int k = 0; k < count; ++k) {
         Vec& out = f_.mirror[todo[first + k]];
-        if (!lit[k].on) {
+        if (!lit[k].space) {
           out = scene_.sky.radiance(
               {rays.direction[0][k], rays.direction[1][k], rays.direction[2][k]});
           continue;
         }
-        const Vec ambient =
-            scene_.space_at(lit[k].position).probes.irradiance(lit[k].position, lit[k].normal);
+        const Vec ambient = lit[k].space->probes.irradiance(lit[k].position, lit[k].normal);
         out = colors[k] * (lit[k].irradiance + ambient) * (1 / kPi) + emission[k];
       }
     }

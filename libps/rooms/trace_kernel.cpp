@@ -75,12 +75,12 @@ inline void keep_nearest(const TraceTriangle& q, int part, Rays* r) {
 
 /// @return false when no ray is left
 inline bool stop_blocked(const TraceTriangle& q, Rays* r) {
-  int left = 0;
   for (int i = 0; i < kRays; ++i) {
     const Hit hit = meet(q, *r, i);
     r->reach[i] = hit.yes ? -1.f : r->reach[i];
-    left |= r->reach[i] > 0 ? 1 : 0;
   }
+  int left = 0;
+  for (int i = 0; i < kRays; ++i) left |= r->reach[i] > 0 ? 1 : 0;
   return left != 0;
 }
 

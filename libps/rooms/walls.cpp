@@ -351,7 +351,11 @@ void build_walls(Set& set, Plan& plan, bool first) {
     light_windows(set, e);
   }
   if (d.chance(0.12f) || (plan.kind == RoomKind::hall && d.chance(0.3f))) build_beams(set, d, plan);
-  light_ceiling(set, d, plan, d.chance(first ? 0.75f : 0.6f));
+  bool day = luminance(set.scene.sky.horizon) > 0.1f, window = false;
+  for (const Edge& e : plan.edges) {
+    for (const Opening& o : e.openings) window |= o.kind == Opening::window;
+  }
+  light_ceiling(set, d, plan, d.chance(day && window ? 0.6f : first ? 1.f : 0.9f));
 }
 
 }  // namespace ps::rooms
