@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <functional>
+
 #include "libps/core/parallel.h"
 #include "tests/io/support.h"
 #include "tests/outpaint/outpainter_fixture.h"
@@ -60,6 +62,27 @@ TEST_F(OutpainterOfRandomWeights, the_best_is_that_of_the_signals_totals) {
       totals({{result.scores[0], true}, {result.scores[1], false}, {result.scores[2], true}});
   EXPECT_EQ(result.totals, expected);
   EXPECT_EQ(result.best, static_cast<int>(best_of(expected)));
+}
+
+/// The paper's ablations: one completion, the classifier alone, the discriminator alone.
+TEST_F(OutpainterOfRandomWeights, one_signal_alone_chooses_its_own_best) {
+  OutpaintOptions options;
+  options.samples = 6;
+  const auto result_of = [&](std::vector<Scorer> scorers) {
+    return outpainter(std::move(scorers)).run(projection_, background_, options);
+  };
+  const auto place = [](const std::vector<double>& scores, auto than) {
+    return std::min_element(scores.begin(), scores.end(), than) - scores.begin();
+  };
+  const Outpainted realest = result_of({discriminator_scorer(discriminator_)});
+  EXPECT_EQ(realest.best, place(realest.scores.at(0), std::greater<>()));
+  const Outpainted surest = result_of({entropy_scorer(classifier_)});
+  EXPECT_EQ(surest.best, place(surest.scores.at(0), std::less<>()));
+  const Outpainted likeliest = result_of({});
+  EXPECT_EQ(likeliest.best, place(likeliest.scores.at(0), std::greater<>()));
+  EXPECT_NE(realest.scores, surest.scores);
+  options.samples = 1;
+  EXPECT_EQ(result_of({discriminator_scorer(discriminator_)}).best, 0);
 }
 
 TEST_F(OutpainterOfRandomWeights, draws_in_rounds_until_the_best_has_settled) {
