@@ -27,6 +27,7 @@ std::vector<Point> flattened(const std::vector<std::array<float, 3>>& corners) {
   const auto axis = static_cast<std::size_t>(widest - normal.begin());
   const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
   std::vector<Point> flat;
+  flat.reserve(corners.size());
   for (const auto& corner : corners) {
     flat.push_back(*widest < 0 ? Point{corner[v], corner[u]} : Point{corner[u], corner[v]});
   }

@@ -54,9 +54,13 @@ cv::Mat1f log_depth_of(const models::DepthNet& net, const Image& square, const D
   cv::Mat input(kSide, kSide, CV_32FC3, image.data);
   square.convertTo(input, CV_32F, 2, -1);
   net.forward(image, depth, workspace);
+  const cv::Mat1f said(kSide, kSide, depth.data);
+  if (!cv::checkRange(said)) {
+    throw Error("depth network", "gives what is no finite number", "sound weights");
+  }
   models::depth_of_raw(depth, scale.min_z, scale.max_z, depth);
   cv::Mat1f logarithm;
-  cv::log(cv::Mat1f(kSide, kSide, depth.data), logarithm);
+  cv::log(said, logarithm);
   return logarithm;
 }
 
@@ -86,16 +90,16 @@ void align(std::vector<cv::Mat1f>& squares, const std::vector<int>& starts) {
 /// or ends with a step.
 cv::Mat1f blended(const std::vector<cv::Mat1f>& squares, const std::vector<int>& starts) {
   cv::Mat1f out = cv::Mat1f::zeros(kSide, starts.back() + kSide);
-  std::vector<float> weights(static_cast<std::size_t>(out.cols));
+  cv::Mat1f weights = cv::Mat1f::zeros(1, out.cols);
   for (std::size_t i = 0; i < squares.size(); ++i) {
     for (int x = 0; x < kSide; ++x) {
       const double root = std::sin(CV_PI * (x + 0.5) / kSide);
       const auto weight = static_cast<float>(root * root);
-      weights[static_cast<std::size_t>(starts[i] + x)] += weight;
+      weights(starts[i] + x) += weight;
       out.col(starts[i] + x) += weight * squares[i].col(x);
     }
   }
-  for (int x = 0; x < out.cols; ++x) out.col(x) /= weights[static_cast<std::size_t>(x)];
+  for (int x = 0; x < out.cols; ++x) out.col(x) /= weights(x);
   return out;
 }
 
@@ -104,8 +108,8 @@ cv::Mat1f blended(const std::vector<cv::Mat1f>& squares, const std::vector<int>&
 void check(const DepthScale& scale, const std::string& where) {
   const bool sound = scale.min_z > 0 && scale.max_z > scale.min_z && std::isfinite(scale.max_z) &&
                      scale.canonical_focal > 0 && std::isfinite(scale.canonical_focal);
-  if (!sound)
-    throw Error(where, "its depth scale is unsound", "0 < min_z < max_z, canonical_focal > 0");
+  if (sound) return;
+  throw Error(where, "its depth scale is unsound", "0 < min_z < max_z, canonical_focal > 0");
 }
 
 Depth photo_depth(const models::DepthNet& net, const Image& photo, const Intrinsics& lens,

@@ -38,7 +38,8 @@ void check(const DepthScale& scale, const std::string& where);
 /// @param lens   of the photo; only sqrt(fx * fy) matters
 /// @return metres along z, of the photo's size; every pixel has one. Not limited to max_z, where
 /// the lens is longer than the canonical one.
-/// Throws ps::Error when the photo is empty or too long, or lens or scale are unsound.
+/// Throws ps::Error when the photo is empty or too long, lens or scale are unsound, or the network
+/// gives what is not finite.
 Depth photo_depth(const models::DepthNet& net, const Image& photo, const Intrinsics& lens,
                   const DepthScale& scale = {});
 

@@ -179,5 +179,12 @@ TEST(PhotoDepth, refuses_what_is_unsound) {
   }
 }
 
+TEST(PhotoDepth, a_network_that_gives_no_number_is_an_error) {
+  auto tensors = models::random_depth_net(2).tensors();
+  for (float& value : tensors.at("pts_regressor.dconv8.weight").values) value *= 3e38f;
+  const models::DepthNet wild(nn::Weights("wild", std::move(tensors)));
+  EXPECT_THROW(photo_depth(wild, picture(400, 256), intrinsics_from_fov(400, 256, 60)), Error);
+}
+
 }  // namespace
 }  // namespace ps
