@@ -15,34 +15,54 @@ float& channel(Shot& s, int x, int y, int c) {
   return s.color[(static_cast<std::size_t>(y) * s.width + x) * 3 + c];
 }
 
+/// A function of [0, 1.5) by table.
+class Table {
+ public:
+  template <typename F>
+  explicit Table(F f) {
+    for (int i = 0; i <= kSteps; ++i) values_[i] = f(kMost * static_cast<float>(i) / kSteps);
+  }
+  float operator()(float x) const {
+    const float at = std::clamp(x / kMost, 0.f, 0.9999f) * kSteps;
+    const int i = static_cast<int>(at);
+    return mix(values_[i], values_[i + 1], at - static_cast<float>(i));
+  }
+
+ private:
+  static constexpr int kSteps = 1024;
+  static constexpr float kMost = 1.5f;
+  std::array<float, kSteps + 1> values_;
+};
+
 /// Exposure, colour of the light, corners, contrast, saturation.
 void tone(Shot& s, Dice& d, const EffectOptions& o) {
+  // Gains act on light; a power of 2.2 is near enough to sRGB.
+  const auto gain_of = [](float gain) { return std::pow(gain, 1 / 2.2f); };
   const float gain = std::exp2(d.normal() * 0.5f * o.exposure);
-  const float red = 1 + 0.5f * o.white_balance * d.normal(),
-              blue = 1 + 0.5f * o.white_balance * d.normal();
+  const float red = 1 + 0.5f * o.white_balance * d.normal();
+  const float blue = 1 + 0.5f * o.white_balance * d.normal();
+  const float gains[3] = {gain_of(gain * red), gain_of(gain), gain_of(gain * blue)};
   const float corner = d.chance(0.6f) ? o.vignetting * d.unit() : 0;
-  const float gamma = std::exp2(0.5f * o.contrast * d.normal()),
-              curve = o.contrast * d.range(-0.3f, 1);
+  const float gamma = std::exp2(0.5f * o.contrast * d.normal());
+  const float curve = o.contrast * d.range(-0.3f, 1);
   const float saturation = 1 + o.saturation * d.range(-1, 1);
-  const Vec gains{gain * red, gain, gain * blue};
-  const float mx = 0.5f * static_cast<float>(s.width - 1),
-              my = 0.5f * static_cast<float>(s.height - 1);
+  const Table light_left([&](float r2) { return gain_of(1 - corner * 0.5f * std::min(r2, 2.f)); });
+  const Table contrast([&](float x) {
+    const float q = std::pow(clamp01(x), gamma);
+    return mix(q, q * q * (3 - 2 * q), curve);
+  });
+  const float mx = 0.5f * static_cast<float>(s.width - 1);
+  const float my = 0.5f * static_cast<float>(s.height - 1);
   for (int y = 0; y < s.height; ++y) {
     for (int x = 0; x < s.width; ++x) {
-      const float a = (static_cast<float>(x) - mx) / (mx + 1),
-                  b = (static_cast<float>(y) - my) / (my + 1);
-      const float light = 1 - corner * 0.5f * (a * a + b * b);
+      const float a = (static_cast<float>(x) - mx) / (mx + 1);
+      const float b = (static_cast<float>(y) - my) / (my + 1);
+      const float light = light_left((a * a + b * b) * 0.7f);
       float* p = &channel(s, x, y, 0);
-      // Gains act on light; a power of 2.2 is near enough to sRGB.
-      float v[3] = {p[0], p[1], p[2]};
-      const float g[3] = {gains.x, gains.y, gains.z};
-      for (int c = 0; c < 3; ++c) v[c] = std::min(1.f, v[c] * std::pow(g[c] * light, 1 / 2.2f));
+      float v[3];
+      for (int c = 0; c < 3; ++c) v[c] = std::min(1.f, p[c] * gains[c] * light);
       const float grey = 0.3f * v[0] + 0.59f * v[1] + 0.11f * v[2];
-      for (int c = 0; c < 3; ++c) {
-        float q = clamp01(grey + (v[c] - grey) * saturation);
-        q = gamma == 1 ? q : std::pow(q, gamma);
-        p[c] = mix(q, q * q * (3 - 2 * q), curve);
-      }
+      for (int c = 0; c < 3; ++c) p[c] = contrast(clamp01(grey + (v[c] - grey) * saturation));
     }
   }
 }

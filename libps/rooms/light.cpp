@@ -10,19 +10,17 @@ namespace {
 constexpr float kPi = 3.14159265f;
 constexpr int kDirections = 3 * kRays;  ///< rays of a probe
 constexpr int kBounces = 3;
-constexpr int kMostEmitters = 48;
 constexpr std::size_t kOwnRays = 2;  ///< groups of lights that are asked for certain
 constexpr float kFaint = 0.003f;     ///< irradiance that nobody sees
 
-/// What an emitter would send if nothing stood between, from its middle.
+/// About what an emitter would send if nothing stood between.
 float rate(const Emitter& e, Vec p, Vec n) {
   const Vec to = e.center - p;
-  const float d2 = std::max(dot(to, to), 0.01f), d = std::sqrt(d2);
-  const float at_surface = std::max(0.f, dot(n, to) / d) + 0.05f;
-  if (e.round) return kPi * e.half_u.x * e.half_u.x * at_surface / d2;
-  const float at_lamp = std::max(0.f, -dot(e.normal, to) / d);
-  return 4 * length(e.half_u) * length(e.half_v) * at_surface * at_lamp /
-         (d2 + dot(e.half_u, e.half_u) + dot(e.half_v, e.half_v));
+  const float d2 = std::max(dot(to, to), 0.01f);
+  const float at_surface = std::max(0.f, dot(n, to) + 0.3f * e.radius);
+  // A ball shines the same way all around.
+  const float at_lamp = e.round ? std::sqrt(d2) : std::max(0.f, -dot(e.normal, to));
+  return e.area * at_surface * at_lamp / (d2 * (d2 + e.radius * e.radius));
 }
 
 /// Where a shadow ray goes, and what comes from there if nothing stands between.
@@ -39,7 +37,7 @@ struct Rates {
 
 Rates rates_of(const LightGroup& g, const Lit& l) {
   Rates r;
-  const int n = static_cast<int>(std::min<std::size_t>(g.emitters.size(), kMostEmitters));
+  const int n = static_cast<int>(g.emitters.size());
   for (int i = 0; i < n; ++i) r.total += r.of[i] = rate(g.emitters[i], l.position, l.normal);
   return r;
 }
@@ -47,7 +45,7 @@ Rates rates_of(const LightGroup& g, const Lit& l) {
 /// A random point of the group. `choice` in [0,1) picks the emitter.
 Sample sample_group(const LightGroup& g, const Lit& l, float choice) {
   const Rates rates = rates_of(g, l);
-  const int used = static_cast<int>(std::min<std::size_t>(g.emitters.size(), kMostEmitters));
+  const int used = static_cast<int>(g.emitters.size());
   float left = choice * rates.total;
   int pick = 0;
   while (pick + 1 < used && left >= rates.of[pick]) left -= rates.of[pick++];
@@ -113,24 +111,27 @@ void add_sun(const Scene& scene, Lit* lit) {
 void add_direct(const Scene& scene, Lit* lit) {
   // How much each group would give, for each place and in all.
   struct Group {
-    int index;
+    int index = 0;
     float sum = 0;
-    float to[kRays] = {};
+    float to[kRays];
   };
-  std::vector<Group> groups;
+  Group groups[kMostLights];
+  std::size_t count = 0;
   for (std::size_t g = 0; g < scene.lights.size(); ++g) {
-    Group group{static_cast<int>(g)};
+    Group& group = groups[count];
+    group.index = static_cast<int>(g);
+    group.sum = 0;
     for (int i = 0; i < kRays; ++i) {
+      group.to[i] = 0;
       if (!lit[i].space || !lit[i].space->lit_by[g]) continue;
       const float r = rates_of(scene.lights[g], lit[i]).total * luminance(scene.lights[g].radiance);
       if (r > kFaint) group.sum += group.to[i] = r;
     }
-    if (group.sum > 0) groups.push_back(group);
+    if (group.sum > 0) ++count;
   }
-  std::sort(groups.begin(), groups.end(),
-            [](const Group& a, const Group& b) { return a.sum > b.sum; });
+  std::sort(groups, groups + count, [](const Group& a, const Group& b) { return a.sum > b.sum; });
   // The strongest have rays of their own; of the others each place asks one.
-  const std::size_t own = groups.size() <= kOwnRays + 1 ? groups.size() : kOwnRays;
+  const std::size_t own = count <= kOwnRays + 1 ? count : kOwnRays;
   for (std::size_t g = 0; g < own; ++g) {
     Sample samples[kRays];
     for (int i = 0; i < kRays; ++i) {
@@ -140,15 +141,15 @@ void add_direct(const Scene& scene, Lit* lit) {
     }
     add_samples(scene, lit, samples);
   }
-  if (own < groups.size()) {
+  if (own < count) {
     Sample samples[kRays];
     for (int i = 0; i < kRays; ++i) {
       float total = 0;
-      for (std::size_t g = own; g < groups.size(); ++g) total += groups[g].to[i];
+      for (std::size_t g = own; g < count; ++g) total += groups[g].to[i];
       if (total <= 0) continue;
       float left = lit[i].choice * total;
       std::size_t pick = own;
-      while (pick + 1 < groups.size() && left >= groups[pick].to[i]) left -= groups[pick++].to[i];
+      while (pick + 1 < count && left >= groups[pick].to[i]) left -= groups[pick++].to[i];
       const float share = groups[pick].to[i] / total;
       if (share <= 0) continue;
       samples[i] = sample_group(scene.lights[groups[pick].index], lit[i],
@@ -290,8 +291,7 @@ void find_lights(const Scene& scene, Space& space) {
       if (space.lit_by[g]) continue;
       Sample samples[kRays];
       for (int i = 0; i < kRays; ++i) {
-        lit[i].normal =
-            normalized((scene.lights[g].low + scene.lights[g].high) * 0.5f - lit[i].position);
+        lit[i].normal = normalized(scene.lights[g].middle - lit[i].position);
         lit[i].irradiance = {};
         samples[i] = sample_group(scene.lights[g], lit[i], lit[i].s);
       }

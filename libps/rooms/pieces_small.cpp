@@ -109,11 +109,9 @@ Piece floor_lamp(Set& set, Dice& d) {
             if (!on) return;
             LightGroup g;
             const Vec c = b.frame().point({0, high - 0.15f, 0});
-            g.emitters.push_back({c, {0.08f, 0, 0}, {}, {}, true});
-            g.area = 3.14159f * 0.0064f;
-            g.low = g.high = c;
+            g.add({c, {0.08f, 0, 0}, {}, {}, true});
             g.radiance = tint * (power / g.area * 0.3f);
-            s.scene.lights.push_back(g);
+            s.add(g);
           }};
 }
 

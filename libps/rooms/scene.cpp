@@ -84,6 +84,16 @@ void Scene::blocked(Rays& rays) const {
   }
 }
 
+void LightGroup::add(Emitter e) {
+  if (emitters.size() >= kMostEmitters) return;
+  e.area = e.round ? 3.14159f * e.half_u.x * e.half_u.x : 4 * length(e.half_u) * length(e.half_v);
+  e.radius = std::sqrt(dot(e.half_u, e.half_u) + dot(e.half_v, e.half_v));
+  const auto count = static_cast<float>(emitters.size());
+  middle = (middle * count + e.center) * (1 / (count + 1));
+  emitters.push_back(e);
+  area += e.area;
+}
+
 Vec Scene::evened(Vec light) const {
   light += Vec{1, 1, 1} * (0.02f * middle_light);  // no place is quite dark
   return light * std::pow(luminance(light) / middle_light, -evening);

@@ -28,14 +28,22 @@ struct Rect {
 struct Emitter {
   Vec center, half_u, half_v, normal;
   bool round = false;  ///< half_u.x is the radius
+  float area = 0;      ///< as seen head on
+  float radius = 0;    ///< of a ball around it
 };
+
+constexpr std::size_t kMostEmitters = 48;  ///< of a group
+constexpr std::size_t kMostLights = 32;    ///< groups of a scene
 
 /// Lights of one radiance that are sampled together.
 struct LightGroup {
   std::vector<Emitter> emitters;
   Vec radiance;
-  Vec low, high;   ///< bounds
-  float area = 0;  ///< of all, as seen head on
+  Vec middle;
+  float area = 0;  ///< of all
+
+  /// Sets the emitter's area and radius. More than kMostEmitters are left out.
+  void add(Emitter e);
 };
 
 struct Sky {

@@ -71,6 +71,9 @@ struct Set {
     scene.pictures.emplace_back(t);
     return static_cast<int>(scene.pictures.size() - 1);
   }
+  void add(const LightGroup& g) {
+    if (!g.emitters.empty() && scene.lights.size() < kMostLights) scene.lights.push_back(g);
+  }
   Builder solid(const Frame& f = {}) { return Builder(scene.solid, f); }
   Builder lamps(const Frame& f = {}) { return Builder(scene.lamps, f); }
 };

@@ -188,30 +188,17 @@ void build_radiator(Set& set, Dice& d, const Edge& e, const Opening& o) {
       {{std::min(p.x, q.x), std::min(p.z, q.z), std::max(p.x, q.x), std::max(p.z, q.z)}, 0, 0.9f});
 }
 
-void add_emitter(LightGroup& g, const Emitter& e) {
-  const Vec extent = e.round ? Vec{e.half_u.x, e.half_u.x, e.half_u.x}
-                             : max(max(e.half_u, -e.half_u), max(e.half_v, -e.half_v));
-  if (g.emitters.empty()) {
-    g.low = e.center - extent;
-    g.high = e.center + extent;
-  }
-  g.low = min(g.low, e.center - extent);
-  g.high = max(g.high, e.center + extent);
-  g.emitters.push_back(e);
-  g.area += e.round ? 3.14159f * e.half_u.x * e.half_u.x : 4 * length(e.half_u) * length(e.half_v);
-}
-
 void light_windows(Set& set, const Edge& e) {
   LightGroup g;
   g.radiance = mix(set.scene.sky.horizon, set.scene.sky.zenith, 0.4f) * 0.7f;
   for (const Opening& o : e.openings) {
     if (o.kind != Opening::window) continue;
     const Vec u = e.frame.ex * ((o.to - o.from) * 0.5f), v = Vec{0, (o.top - o.bottom) * 0.5f, 0};
-    add_emitter(g, {e.frame.point({(o.from + o.to) / 2, (o.top + o.bottom) / 2,
-                                   -0.5f * set.style.wall - 0.08f}),
-                    u, v, e.frame.ez});
+    g.add({e.frame.point(
+               {(o.from + o.to) / 2, (o.top + o.bottom) / 2, -0.5f * set.style.wall - 0.08f}),
+           u, v, e.frame.ez});
   }
-  if (!g.emitters.empty()) set.scene.lights.push_back(g);
+  if (!g.emitters.empty()) set.add(g);
 }
 
 /// One kind of ceiling lamp at (x, z); adds what it emits.
@@ -228,25 +215,25 @@ void build_ceiling_lamp(Set& set, const CeilingLamp& l, float x, float y, float 
   const float s = l.size;
   if (l.kind == 0) {  // panel in the ceiling
     glow.box({-s, -0.015f, -s}, {s, 0.01f, s}, l.glow);
-    add_emitter(g, {{x, y - 0.02f, z}, {s, 0, 0}, {0, 0, s}, {0, -1, 0}});
+    g.add({{x, y - 0.02f, z}, {s, 0, 0}, {0, 0, s}, {0, -1, 0}});
   } else if (l.kind == 1) {  // tube
     const float hx = l.along_z ? 0.06f : 0.65f, hz = l.along_z ? 0.65f : 0.06f;
     b.box({-hx - 0.02f, -l.drop, -hz - 0.02f}, {hx + 0.02f, -l.drop + 0.05f, hz + 0.02f}, l.body);
     glow.box({-hx, -l.drop - 0.03f, -hz}, {hx, -l.drop, hz}, l.glow);
-    add_emitter(g, {{x, y - l.drop - 0.04f, z}, {hx, 0, 0}, {0, 0, hz}, {0, -1, 0}});
+    g.add({{x, y - l.drop - 0.04f, z}, {hx, 0, 0}, {0, 0, hz}, {0, -1, 0}});
   } else if (l.kind == 2) {  // pendant
     b.rod({0, -l.drop, 0}, {0, 0, 0}, 0.005f, l.body, 5);
     glow.lathe({0, -l.drop - 0.2f, 0}, {{s * 0.5f, 0}, {s * 0.35f, 0.15f}, {0.05f, 0.2f}}, l.glow,
                16);
-    add_emitter(g, {{x, y - l.drop - 0.12f, z}, {0.1f, 0, 0}, {}, {}, true});
+    g.add({{x, y - l.drop - 0.12f, z}, {0.1f, 0, 0}, {}, {}, true});
   } else if (l.kind == 3) {  // spot
     b.cylinder({0, -0.05f - l.drop, 0}, 0.05f, 0.05f + l.drop, l.body, 0.05f, 10);
     glow.cylinder({0, -0.056f - l.drop, 0}, 0.04f, 0.004f, l.glow, -1, 10);
-    add_emitter(g, {{x, y - 0.07f - l.drop, z}, {0.06f, 0, 0}, {0, 0, 0.06f}, {0, -1, 0}});
+    g.add({{x, y - 0.07f - l.drop, z}, {0.06f, 0, 0}, {0, 0, 0.06f}, {0, -1, 0}});
   } else {  // dome
     glow.lathe({0, -0.12f, 0}, {{0, 0}, {s * 0.3f, 0.02f}, {s * 0.5f, 0.07f}, {s * 0.55f, 0.12f}},
                l.glow, 16);
-    add_emitter(g, {{x, y - 0.15f, z}, {s * 0.4f, 0, 0}, {0, 0, s * 0.4f}, {0, -1, 0}});
+    g.add({{x, y - 0.15f, z}, {s * 0.4f, 0, 0}, {0, 0, s * 0.4f}, {0, -1, 0}});
   }
 }
 
@@ -288,7 +275,7 @@ void light_ceiling(Set& set, Dice& d, const Plan& plan, bool on) {
   // About the same light for each square metre of floor, whatever the lamps.
   const float strength = d.range(0.5f, 1.6f) * r.width() * r.depth() * 0.35f / g.area;
   g.radiance = g.radiance * strength;
-  set.scene.lights.push_back(g);
+  set.add(g);
 }
 
 void build_beams(Set& set, Dice& d, const Plan& plan) {

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/rooms/shooter.h"
+
+#include <array>
+#include <cmath>
+
+#include "libps/rooms/view_rays.h"
+
+namespace ps::rooms {
+namespace {
+
+constexpr float kPi = 3.14159265f;
+constexpr float kAmbientReach = 0.8f;   ///< metres within which things darken corners
+constexpr float kLeastMirror = 0.012f;  ///< reflected share that is worth a ray
+constexpr float kAbove = 2e-3f;         ///< metres over a surface where rays start
+
+/// Where pixel (x, y) stands in its 4x4 block, well spread.
+constexpr int kOrder[16] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
+
+/// The bits of 0..15 backwards, as a fraction.
+float reversed(int k) {
+  return static_cast<float>((k & 1) << 3 | (k & 2) << 1 | (k & 4) >> 1 | (k & 8) >> 3) / 16.f +
+         1 / 32.f;
+}
+
+/// Schlick, "An Inexpensive BRDF Model for Physically-based Rendering" (1994); rough surfaces shine
+/// less at their edges.
+float fresnel(const Material& m, float cosine) {
+  if (m.gloss <= 0) return 0;
+  if (m.gloss >= 1) return 1;
+  const float k = 1 - clamp01(cosine), k2 = k * k;
+  const float share = m.gloss + (1 - m.gloss) * k2 * k2 * k * std::max(0.f, 0.6f - 2 * m.roughness);
+  return share > kLeastMirror ? share : 0;
+}
+
+/// Turns (x, y, z) with z up so that z stands on n: Duff et al., "Building an Orthonormal Basis,
+/// Revisited" (2017).
+Vec stand_on(Vec n, float x, float y, float z) {
+  const float s = std::copysign(1.f, n.z), a = -1 / (s + n.z), b = n.x * n.y * a;
+  return Vec{1 + s * n.x * n.x * a, s * b, -s * n.x} * x + Vec{b, s + n.y * n.y * a, -n.y} * y +
+         n * z;
+}
+
+/// sRGB of what comes from a scene, straight at first, then with a shoulder.
+class ToneCurve {
+ public:
+  ToneCurve() {
+    for (int i = 0; i <= kSteps; ++i) {
+      const float root = static_cast<float>(i) / kSteps, x = root * root * kMost;
+      table_[i] = srgb_from_linear(x < 0.6f ? x : 0.6f + 0.4f * (1 - std::exp((0.6f - x) / 0.4f)));
+    }
+  }
+  float operator()(float x) const {
+    const float at = std::sqrt(std::clamp(x / kMost, 0.f, 0.9999f)) * kSteps;
+    const int i = static_cast<int>(at);
+    return mix(table_[i], table_[i + 1], at - static_cast<float>(i));
+  }
+
+ private:
+  static constexpr int kSteps = 1024;
+  static constexpr float kMost = 4;
+  std::array<float, kSteps + 1> table_;
+};
+
+}  // namespace
+
+Shooter::Shooter(const Scene& scene, const Camera& camera)
+    : scene_(scene), camera_(camera), eye_(eye_of(camera)), plane_(camera.width, camera.height) {}
+
+Shot Shooter::shoot() {
+  for (int y = 0; y < plane_.height; y += kSide) {
+    for (int x = 0; x < plane_.width; x += kSide) {
+      look(x, y);
+      light(x, y);
+    }
+  }
+  reflect();
+  plane_.find_ends();
+  plane_.smooth_light();
+  plane_.smooth_mirror();
+  const std::size_t n = plane_.pixels.size();
+  std::vector<Vec> colors(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (plane_.pixels[i].material) plane_.light[i] = scene_.evened(plane_.light[i]);
+    colors[i] = shown(radiance(plane_.pixels[i], i));
+  }
+  smooth_edges(colors);
+  Shot shot{plane_.width, plane_.height, std::vector<float>(3 * n), std::move(plane_.depth)};
+  for (std::size_t i = 0; i < n; ++i) {
+    shot.color[3 * i] = colors[i].x;
+    shot.color[3 * i + 1] = colors[i].y;
+    shot.color[3 * i + 2] = colors[i].z;
+  }
+  return shot;
+}
+
+Pixel Shooter::see(const Rays& rays, int i) const {
+  const Surface s = surface_of(scene_, rays, i);
+  const Vec to_eye = normalized(eye_ - s.position);
+  const float slant = std::max(0.15f, dot(to_eye, s.flat));
+  const float footprint = rays.reach[i] / camera_.fx / std::sqrt(slant) * s.uv_per_metre;
+  Pixel p;
+  p.material = s.material;
+  p.position = s.position;
+  p.normal = s.normal;
+  p.flat = s.flat;
+  p.albedo = albedo(*s.material, *s.pictures, s.u, s.v, footprint);
+  p.reflected = fresnel(*s.material, dot(s.normal, to_eye));
+  return p;
+}
+
+void Shooter::look(int x0, int y0) {
+  Rays rays;
+  block_rays(camera_, x0, y0, rays);
+  scene_.nearest(rays);
+  for (int k = 0; k < kRays; ++k) {
+    if (rays.reach[k] < 0) continue;
+    const std::size_t i = plane_.index(x0 + k % kSide, y0 + k / kSide);
+    if (rays.face[k] < 0) {
+      plane_.light[i] = scene_.sky.radiance(direction_of(rays, k));
+    } else {
+      plane_.depth[i] = rays.reach[k];
+      plane_.pixels[i] = see(rays, k);
+    }
+  }
+}
+
+void Shooter::light(int x0, int y0) {
+  Lit lit[kRays];
+  Rays rays;
+  clear(rays);
+  bool any = false;
+  for (int k = 0; k < kRays; ++k) {
+    const int x = x0 + k % kSide, y = y0 + k / kSide;
+    if (x >= plane_.width || y >= plane_.height) continue;
+    const Pixel& p = plane_.pixels[plane_.index(x, y)];
+    if (!p.material) continue;
+    any = true;
+    const int o = kOrder[k];
+    lit[k].space = &scene_.space_at(p.position);
+    lit[k].position = p.position + p.flat * kAbove;
+    lit[k].normal = p.normal;
+    lit[k].s = (static_cast<float>(o) + 0.5f) / 16;
+    lit[k].t = reversed(o);
+    lit[k].choice = (static_cast<float>(o * 7 % 16) + 0.5f) / 16;
+    // Directions spread by the cosine, to find what darkens a corner.
+    const float r = std::sqrt(lit[k].t), a = 2 * kPi * lit[k].s;
+    set_ray(rays, k, lit[k].position,
+            stand_on(p.flat, r * std::cos(a), r * std::sin(a), std::sqrt(1 - r * r)),
+            kAmbientReach);
+  }
+  if (!any) return;
+  scene_.nearest(rays);
+  add_direct(scene_, lit);
+  for (int k = 0; k < kRays; ++k) {
+    if (!lit[k].space) continue;
+    float open = 1;
+    if (rays.face[k] >= 0) {
+      const float near = 1 - rays.reach[k] / kAmbientReach;
+      open = 1 - 0.9f * near * std::sqrt(near);
+    }
+    const std::size_t i = plane_.index(x0 + k % kSide, y0 + k / kSide);
+    const Pixel& p = plane_.pixels[i];
+    const Vec ambient = lit[k].space->probes.irradiance(p.position, p.normal);
+    plane_.light[i] = (lit[k].irradiance + ambient * open) * (1 / kPi);
+  }
+}
+
+void Shooter::reflect() {
+  std::vector<std::uint32_t> todo;
+  for (int y = 0; y < plane_.height; y += kSide) {  // by blocks: rays of a packet stay together
+    for (int x = 0; x < plane_.width; x += kSide) {
+      for (int k = 0; k < kRays; ++k) {
+        const int px = x + k % kSide, py = y + k / kSide;
+        if (px >= plane_.width || py >= plane_.height) continue;
+        const std::size_t i = plane_.index(px, py);
+        if (plane_.pixels[i].reflected > 0) todo.push_back(static_cast<std::uint32_t>(i));
+      }
+    }
+  }
+  for (std::size_t first = 0; first < todo.size(); first += kRays) {
+    reflect(&todo[first], static_cast<int>(std::min<std::size_t>(kRays, todo.size() - first)));
+  }
+}
+
+void Shooter::reflect(const std::uint32_t* pixels, int count) {
+  Rays rays;
+  clear(rays);
+  for (int k = 0; k < count; ++k) {
+    const Pixel& p = plane_.pixels[pixels[k]];
+    const Vec in = normalized(p.position - eye_);
+    Vec out = in - p.normal * (2 * dot(in, p.normal));
+    const std::uint32_t x = pixels[k] % plane_.width, y = pixels[k] / plane_.width;
+    const int o = kOrder[y % kSide * kSide + x % kSide];
+    const float a = 2 * kPi * reversed(o);
+    const float r = p.material->roughness * std::sqrt((static_cast<float>(o) + 0.5f) / 16);
+    out += stand_on(normalized(out), r * std::cos(a), r * std::sin(a), 0);
+    if (dot(out, p.flat) <= 0.01f) out += p.flat * (0.02f - dot(out, p.flat));
+    set_ray(rays, k, p.position + p.flat * kAbove, out, kFarthest);
+  }
+  scene_.nearest(rays);
+  Lit lit[kRays];
+  Vec colors[kRays], emission[kRays];
+  for (int k = 0; k < count; ++k) {
+    if (rays.face[k] < 0) continue;
+    const Surface s = surface_of(scene_, rays, k);
+    lit[k].space = &scene_.space_at(s.position);
+    lit[k].position = s.position + s.flat * kAbove;
+    lit[k].normal = s.normal;
+    colors[k] = albedo(*s.material, *s.pictures, s.u, s.v, 0.02f);
+    emission[k] = s.material->emission;
+  }
+  add_direct(scene_, lit);
+  for (int k = 0; k < count; ++k) {
+    Vec& out = plane_.mirror[pixels[k]];
+    if (!lit[k].space) {
+      out = scene_.sky.radiance(direction_of(rays, k));
+      continue;
+    }
+    const Vec ambient = lit[k].space->probes.irradiance(lit[k].position, lit[k].normal);
+    out = colors[k] * scene_.evened((lit[k].irradiance + ambient) * (1 / kPi)) + emission[k];
+  }
+}
+
+Vec Shooter::radiance(const Pixel& p, std::size_t i) const {
+  if (!p.material) return plane_.light[i];
+  const Material& m = *p.material;
+  const float share = plane_.pixels[i].reflected;
+  Vec out = p.albedo * plane_.light[i] * (1 - share);
+  if (share > 0) {
+    const bool metal = m.gloss > 0.1f && m.gloss < 1;
+    out += plane_.mirror[i] * (metal ? mix(Vec{1, 1, 1}, p.albedo, 0.6f) : Vec{1, 1, 1}) * share;
+  }
+  return out + m.emission * (m.pattern == Pattern::picture ? p.albedo : Vec{1, 1, 1});
+}
+
+Vec Shooter::shown(Vec radiance) const {
+  static const ToneCurve curve;
+  radiance *= scene_.exposure;
+  return {curve(radiance.x), curve(radiance.y), curve(radiance.z)};
+}
+
+void Shooter::smooth_edges(std::vector<Vec>& colors) const {
+  constexpr int kExtra = 3;
+  static const float offset[kExtra][2] = {{-0.33f, -0.1f}, {0.1f, 0.33f}, {0.25f, -0.33f}};
+  const std::vector<std::uint32_t> todo = plane_.edges();
+  for (std::size_t first = 0; first < todo.size(); first += kRays) {
+    const int count = static_cast<int>(std::min<std::size_t>(kRays, todo.size() - first));
+    Vec sums[kRays];
+    for (int k = 0; k < count; ++k) sums[k] = colors[todo[first + k]];
+    for (const auto& o : offset) {
+      Rays rays;
+      clear(rays);
+      for (int k = 0; k < count; ++k) {
+        const std::uint32_t i = todo[first + k];
+        set_ray(rays, k, eye_,
+                ray_of(camera_, static_cast<float>(i % plane_.width) + o[0],
+                       static_cast<float>(i / plane_.width) + o[1]),
+                kFarthest);
+      }
+      scene_.nearest(rays);
+      for (int k = 0; k < count; ++k) sums[k] += extra(rays, k, todo[first + k]);
+    }
+    for (int k = 0; k < count; ++k) colors[todo[first + k]] = sums[k] * (1.f / (kExtra + 1));
+  }
+}
+
+/// Its light is that of the pixel around whose surface is likest.
+Vec Shooter::extra(const Rays& rays, int k, std::size_t i) const {
+  if (rays.face[k] < 0) return shown(scene_.sky.radiance(direction_of(rays, k)));
+  const Pixel p = see(rays, k);
+  const int x0 = static_cast<int>(i % plane_.width), y0 = static_cast<int>(i / plane_.width);
+  std::size_t best = i;
+  float least = 1e9f;
+  for (int y = std::max(0, y0 - 1); y <= std::min(plane_.height - 1, y0 + 1); ++y) {
+    for (int x = std::max(0, x0 - 1); x <= std::min(plane_.width - 1, x0 + 1); ++x) {
+      const std::size_t j = plane_.index(x, y);
+      const Pixel& q = plane_.pixels[j];
+      if (!q.material) continue;
+      const Vec away = q.position - p.position;
+      const float cost = dot(away, away) + (1 - dot(p.normal, q.normal)) * 4 +
+                         (p.material == q.material ? 0.f : 1.f);
+      if (cost < least) {
+        least = cost;
+        best = j;
+      }
+    }
+  }
+  return shown(plane_.pixels[best].material ? radiance(p, best) : p.albedo);
+}
+
+}  // namespace ps::rooms

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Internal to the rooms room.
+#pragma once
+
+#include "libps/rooms/light.h"
+#include "libps/rooms/picture_plane.h"
+#include "libps/rooms/shot.h"
+
+namespace ps::rooms {
+
+/// Draws one shot: what each pixel sees, its light, its reflections, then edges.
+class Shooter {
+ public:
+  Shooter(const Scene& scene, const Camera& camera);
+  Shot shoot();
+
+ private:
+  Pixel see(const Rays& rays, int i) const;
+  /// What 4x4 pixels see.
+  void look(int x0, int y0);
+  /// Light on 4x4 pixels, each with its own sample of the lamps.
+  void light(int x0, int y0);
+  void reflect();
+  void reflect(const std::uint32_t* pixels, int count);
+  /// More rays where surfaces meet.
+  void smooth_edges(std::vector<Vec>& colors) const;
+  Vec extra(const Rays& rays, int k, std::size_t i) const;
+  /// What a surface sends to the eye in the light of pixel i.
+  Vec radiance(const Pixel& p, std::size_t i) const;
+  /// As the camera shows it: sRGB.
+  Vec shown(Vec radiance) const;
+
+  const Scene& scene_;
+  const Camera& camera_;
+  Vec eye_;
+  PicturePlane plane_;
+};
+
+}  // namespace ps::rooms
