@@ -33,8 +33,15 @@ void aim(Camera& c, Vec eye, float yaw, float pitch, float roll) {
   set_pose(c, right, cross(forward, right), forward, eye);
 }
 
-std::vector<float> glance(const Scene& scene, const Camera& c) {
-  std::vector<float> depth;
+/// A small picture to judge a view by.
+struct Glance {
+  std::vector<float> depth = std::vector<float>(kGlance * kGlance);
+  int materials = 0;  ///< how many kinds of surface are seen
+};
+
+Glance glance(const Scene& scene, const Camera& c) {
+  Glance g;
+  std::vector<const Material*> seen;
   const Vec eye = eye_of(c);
   for (int b = 0; b < kGlance * kGlance / kRays; ++b) {
     Rays rays;
@@ -48,14 +55,23 @@ std::vector<float> glance(const Scene& scene, const Camera& c) {
           kFarthest);
     }
     scene.nearest(rays);
-    for (int k = 0; k < kRays; ++k) depth.push_back(rays.face[k] < 0 ? 0 : rays.reach[k]);
+    for (int k = 0; k < kRays; ++k) {
+      const int x = b % 4 * 4 + k % 4, y = b / 4 * 4 + k / 4;
+      g.depth[y * kGlance + x] = rays.face[k] < 0 ? 0 : rays.reach[k];
+      if (rays.face[k] < 0) continue;
+      const Part& part = scene.parts[rays.part[k]];
+      seen.push_back(&(*part.materials)[part.mesh->faces[rays.face[k]].material]);
+    }
   }
-  return depth;
+  std::sort(seen.begin(), seen.end());
+  g.materials = static_cast<int>(std::unique(seen.begin(), seen.end()) - seen.begin());
+  return g;
 }
 
-/// Whether somebody would take this photo.
+/// Whether somebody would take this photo: walls at the nose, sky, and views of nothing are rare.
 bool worth_a_photo(const Scene& scene, const Camera& c, Dice& d) {
-  std::vector<float> depth = glance(scene, c);
+  Glance g = glance(scene, c);
+  std::vector<float>& depth = g.depth;
   int near = 0, outside = 0, steps = 0;
   for (int y = 0; y < kGlance; ++y) {
     for (int x = 0; x < kGlance; ++x) {
@@ -69,8 +85,9 @@ bool worth_a_photo(const Scene& scene, const Camera& c, Dice& d) {
   std::nth_element(depth.begin(), depth.begin() + all / 2, depth.end());
   const float median = depth[all / 2];
   if (near > all / 8 || outside > all / 4 || median < 0.7f) return false;
-  if (median < 1.8f && !d.chance(median < 1.3f ? 0.2f : 0.6f)) return false;
-  return steps > all / 20 || d.chance(0.3f);  // bare walls are rare
+  if (median < 1.8f && !d.chance(median < 1.3f ? 0.25f : 0.6f)) return false;
+  if (g.materials < 7 && !d.chance(g.materials < 4 ? 0.15f : 0.4f)) return false;
+  return steps > all / 20 || d.chance(0.3f);
 }
 
 void check(const CameraOptions& o) {
@@ -140,9 +157,9 @@ Camera random_camera(const Room& room, std::uint64_t seed, const CameraOptions& 
     const float height = std::clamp(
         d.chance(0.75f) ? d.range(1, 1.7f) : d.range(o.min_height, o.max_height), low, high);
     const Vec eye{d.range(r.x0, r.x1), height, d.range(r.z0, r.z1)};
-    // Low views look up a little, high ones down.
-    const float pitch =
-        mostly_small(d) * o.max_pitch - (height - 1.1f) * d.range(0, 0.4f) * o.max_pitch * 0.5f;
+    // People look down at things more than up; the more so the higher they stand.
+    const float down = d.range(0, 0.6f) * std::clamp(height - 0.5f, -0.2f, 1.f);
+    const float pitch = (mostly_small(d) - down) * o.max_pitch;
     aim(c, eye, d.range(0, 6.2831853f), std::clamp(pitch, -o.max_pitch, o.max_pitch) * kDegree,
         mostly_small(d) * o.max_roll * kDegree);
     if (!in_free_space(room, c, 0.25f)) continue;

@@ -43,7 +43,7 @@ void tone(Shot& s, Dice& d, const EffectOptions& o) {
   const float blue = 1 + 0.5f * o.white_balance * d.normal();
   const float gains[3] = {gain_of(gain * red), gain_of(gain), gain_of(gain * blue)};
   const float corner = d.chance(0.6f) ? o.vignetting * d.unit() : 0;
-  const float gamma = std::exp2(0.5f * o.contrast * d.normal());
+  const float gamma = std::exp2(o.contrast * d.range(-0.4f, 1));
   const float curve = o.contrast * d.range(-0.3f, 1);
   const float saturation = 1 + o.saturation * d.range(-1, 1);
   const Table light_left([&](float r2) { return gain_of(1 - corner * 0.5f * std::min(r2, 2.f)); });

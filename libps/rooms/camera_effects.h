@@ -13,7 +13,7 @@ struct EffectOptions {
   float exposure = 0.7f;        ///< stops, either way
   float white_balance = 0.15f;  ///< share of gain of red and blue, either way
   float vignetting = 0.35f;     ///< light lost in the corners
-  float contrast = 0.3f;        ///< gamma and S curve
+  float contrast = 0.4f;        ///< gamma and S curve
   float saturation = 0.35f;     ///< share, either way
   float blur = 1.0f;            ///< pixels, sigma; also short motion blur
   float sharpening = 0.8f;      ///< halo, share

@@ -342,7 +342,42 @@ class Furnisher {
     }
   }
 
+  /// Furniture that suits the room, one at a time, until this share of the floor is taken.
+  void fill(float share) {
+    float floor = 0, taken = 0;
+    for (const Rect& r : plan_.rects) floor += r.width() * r.depth();
+    for (int i = 0; i < 30 && taken < share * floor; ++i) {
+      const bool against = d_.chance(0.65f);
+      const Piece p = against ? wall_piece() : loose_piece();
+      if (against ? wall(p) : loose(p)) taken += p.size.x * p.size.z;
+    }
+  }
+
+  Piece wall_piece() {
+    const int pick = d_.below(12);
+    if (pick < 3) return shelf(set_, d_);
+    if (pick < 5) return cupboard(set_, d_, 0.6f, 1.3f);
+    if (pick < 7) return cupboard(set_, d_, 1.4f, 2.2f);
+    if (pick < 8) return table(set_, d_, false);
+    if (pick < 9) return plant(set_, d_);
+    if (pick < 10) return sofa(set_, d_, d_.chance(0.5f));
+    return pick < 11 ? desk(set_, d_) : box_pile(set_, d_);
+  }
+
+  Piece loose_piece() {
+    const int pick = d_.below(12);
+    if (pick < 3) return chair(set_, d_);
+    if (pick < 4) return office_chair(set_, d_);
+    if (pick < 6) return table(set_, d_, d_.chance(0.4f));
+    if (pick < 7) return round_table(set_, d_);
+    if (pick < 9) return plant(set_, d_);
+    if (pick < 10) return sofa(set_, d_, true);
+    return pick < 11 ? box_pile(set_, d_) : cupboard(set_, d_, 0.4f, 1.2f);
+  }
+
   void common(float share) {
+    const bool narrow = plan_.kind == RoomKind::corridor || plan_.kind == RoomKind::bathroom;
+    fill(share * d_.unit() * (narrow ? 0.06f : 0.3f));
     const auto n = [&](float most) { return d_.below(1 + static_cast<int>(most * share)); };
     const bool home = plan_.kind == RoomKind::living_room || plan_.kind == RoomKind::bedroom;
     if (d_.chance(home ? 0.7f : 0.15f)) rug();
@@ -434,6 +469,8 @@ void furnish(Scene& scene, std::uint64_t seed, const RoomOptions& options) {
   scene.spaces.resize(1);
   scene.spaces[0].kind = pick_kind(set.dice);
   scene.sky = make_sky(set.dice);
+  scene.key = set.dice.range(0.07f, 0.15f);
+  scene.evening = set.dice.range(0.1f, 0.4f);
   set.style = make_style(set);
   std::vector<Plan> plans = plan_building(set);
   scene.spaces.clear();
@@ -454,7 +491,7 @@ void furnish(Scene& scene, std::uint64_t seed, const RoomOptions& options) {
   for (std::size_t i = 0; i < plans.size(); ++i) {
     furnish_space(set, plans[i], i == 0);
     Dice d = set.dice.child();
-    const float fill = d.unit() * d.unit();
+    const float fill = d.range(0, 0.9f) * d.unit();
     const std::vector<Top> tops = std::move(set.tops);
     set.tops.clear();
     for (const Top& top : tops) strew(set, d, top, fill);

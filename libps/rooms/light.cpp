@@ -329,8 +329,8 @@ void bake(Scene& scene) {
   for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = seen[i] * scene.evened(lights[i]);
   // As a photo: a white room may look bright, a dark one dark.
   const float mean = middle(seen);
-  scene.exposure =
-      0.16f * std::pow(mean / 0.16f / scene.middle_light, 0.35f) / std::max(mean, 1e-4f);
+  const float target = scene.key * std::pow(mean / scene.key / scene.middle_light, 0.35f);
+  scene.exposure = target / std::max(mean, 1e-4f);
 }
 
 }  // namespace ps::rooms

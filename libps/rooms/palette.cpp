@@ -28,10 +28,10 @@ float any_hue(Dice& d) {
 
 Vec paint(Dice& d) {
   const float kind = d.unit();
-  if (kind < 0.42f) return hsv(d.range(0.05f, 0.2f), d.range(0, 0.06f), d.range(0.8f, 0.97f));
-  if (kind < 0.6f) return hsv(d.range(0.08f, 0.15f), d.range(0.08f, 0.25f), d.range(0.7f, 0.93f));
-  if (kind < 0.8f) return hsv(any_hue(d), d.range(0, 0.07f), d.range(0.35f, 0.8f));
-  if (kind < 0.93f) return hsv(any_hue(d), d.range(0.1f, 0.35f), d.range(0.5f, 0.9f));
+  if (kind < 0.45f) return hsv(d.range(0.05f, 0.2f), d.range(0, 0.05f), d.range(0.8f, 0.97f));
+  if (kind < 0.6f) return hsv(d.range(0.08f, 0.15f), d.range(0.05f, 0.2f), d.range(0.7f, 0.93f));
+  if (kind < 0.82f) return hsv(any_hue(d), d.range(0, 0.07f), d.range(0.25f, 0.8f));
+  if (kind < 0.94f) return hsv(any_hue(d), d.range(0.08f, 0.3f), d.range(0.45f, 0.9f));
   return hsv(any_hue(d), d.range(0.3f, 0.7f), d.range(0.2f, 0.7f));
 }
 

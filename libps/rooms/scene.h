@@ -101,6 +101,7 @@ struct Scene {
   std::shared_ptr<const FurnitureStore> furniture;
   Sky sky;
   float exposure = 1;
+  float key = 0.12f;       ///< how bright the middle of a room is shown, linear
   float middle_light = 1;  ///< irradiance / pi that is left as it is: cameras lift what is darker
   float evening = 0.35f;   ///< by this power of the ratio
 

@@ -239,7 +239,8 @@ void build_ceiling_lamp(Set& set, const CeilingLamp& l, float x, float y, float 
 
 Vec lamp_color(Dice& d) {
   const float warm = d.unit();
-  return {1, mix(0.95f, 0.72f, warm), mix(0.95f, 0.45f, warm)};
+  // What a camera's white balance leaves of it.
+  return {1, mix(0.97f, 0.8f, warm), mix(0.95f, 0.55f, warm)};
 }
 
 void light_ceiling(Set& set, Dice& d, const Plan& plan, bool on) {
