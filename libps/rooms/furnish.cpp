@@ -33,21 +33,21 @@ class Furnisher {
   void furnish(bool main) {
     switch (plan_.kind) {
       case RoomKind::bedroom:
-        wall(bed(set_, d_));
-        some(0, 2, [&] { wall(cupboard(set_, d_, 0.4f, 0.65f)); });
-        some(0, 2, [&] { wall(cupboard(set_, d_, 1.7f, 2.3f)); });
-        maybe(0.5f, [&] { wall(shelf(set_, d_)); });
+        wall(real(Role::bed, bed(set_, d_)));
+        some(0, 2, [&] { wall(a_cupboard(0.4f, 0.65f)); });
+        some(0, 2, [&] { wall(a_cupboard(1.7f, 2.3f)); });
+        maybe(0.5f, [&] { wall(a_shelf()); });
         maybe(0.5f, [&] { workplace(true); });
-        maybe(0.4f, [&] { wall(cupboard(set_, d_, 0.6f, 1.2f)); });
-        maybe(0.3f, [&] { loose(sofa(set_, d_, true)); });
+        maybe(0.4f, [&] { wall(a_cupboard(0.6f, 1.2f)); });
+        maybe(0.3f, [&] { loose(a_sofa(true)); });
         break;
       case RoomKind::living_room:
-        wall(sofa(set_, d_, false));
-        maybe(0.5f, [&] { loose(sofa(set_, d_, false)); });
-        some(0, 2, [&] { loose(sofa(set_, d_, true)); });
-        maybe(0.8f, [&] { loose(table(set_, d_, true)); });
-        some(0, 3, [&] { wall(shelf(set_, d_)); });
-        some(0, 2, [&] { wall(cupboard(set_, d_, 0.35f, 1.1f)); });
+        wall(a_sofa(false));
+        maybe(0.5f, [&] { loose(a_sofa(false)); });
+        some(0, 2, [&] { loose(a_sofa(true)); });
+        maybe(0.8f, [&] { loose(real(Role::table, table(set_, d_, true))); });
+        some(0, 3, [&] { wall(a_shelf()); });
+        some(0, 2, [&] { wall(a_cupboard(0.35f, 1.1f)); });
         maybe(0.4f, [&] { dining(); });
         maybe(0.6f, [&] { hang(wall_screen(set_, d_), 0.7f, 1.2f); });
         break;
@@ -57,12 +57,12 @@ class Furnisher {
         wall(fridge(set_, d_));
         maybe(0.8f, [&] { dining(); });
         maybe(0.3f, [&] { loose(counter(set_, d_)); });
-        some(0, 2, [&] { wall(cupboard(set_, d_, 0.8f, 2.1f)); });
+        some(0, 2, [&] { wall(a_cupboard(0.8f, 2.1f)); });
         break;
       case RoomKind::office:
         offices();
-        some(0, 3, [&] { wall(shelf(set_, d_)); });
-        some(0, 3, [&] { wall(cupboard(set_, d_, 0.7f, 2)); });
+        some(0, 3, [&] { wall(a_shelf()); });
+        some(0, 3, [&] { wall(a_cupboard(0.7f, 2)); });
         maybe(0.5f, [&] { hang(wall_board(set_, d_), 0.8f, 1.1f); });
         maybe(0.25f, [&] { dining(); });
         break;
@@ -71,25 +71,25 @@ class Furnisher {
         wall(toilet(set_, d_));
         maybe(0.6f, [&] { wall(bathtub(set_, d_)); });
         hang(wall_mirror(set_, d_), 1, 1.3f);
-        maybe(0.5f, [&] { wall(cupboard(set_, d_, 0.6f, 1.9f)); });
+        maybe(0.5f, [&] { wall(a_cupboard(0.6f, 1.9f)); });
         break;
       case RoomKind::corridor:
-        some(0, 4, [&] { wall(cupboard(set_, d_, 0.7f, 2)); });
-        some(0, 2, [&] { wall(shelf(set_, d_)); });
-        some(0, 3, [&] { wall(chair(set_, d_)); });
+        some(0, 4, [&] { wall(a_cupboard(0.7f, 2)); });
+        some(0, 2, [&] { wall(a_shelf()); });
+        some(0, 3, [&] { wall(a_chair()); });
         maybe(0.4f, [&] { hang(coat_rack(set_, d_), 0.5f, 0.8f); });
         break;
       case RoomKind::hall:
         some(0, 3, [&] { dining(); });
-        some(0, 3, [&] { loose(sofa(set_, d_, d_.chance(0.4f))); });
+        some(0, 3, [&] { loose(a_sofa(d_.chance(0.4f))); });
         some(0, 2, [&] { loose(counter(set_, d_)); });
-        some(0, 4, [&] { wall(cupboard(set_, d_, 0.7f, 2)); });
+        some(0, 4, [&] { wall(a_cupboard(0.7f, 2)); });
         some(0, 3, [&] { column(); });
-        some(0, 3, [&] { loose(plant(set_, d_)); });
+        some(0, 3, [&] { loose(a_plant()); });
         break;
       case RoomKind::storage:
-        some(2, 7, [&] { wall(shelf(set_, d_)); });
-        some(0, 3, [&] { wall(cupboard(set_, d_, 0.7f, 2)); });
+        some(2, 7, [&] { wall(a_shelf()); });
+        some(0, 3, [&] { wall(a_cupboard(0.7f, 2)); });
         some(1, 9, [&] { loose(box_pile(set_, d_)); });
         maybe(0.6f, [&] { loose(stepladder(set_, d_)); });
         break;
@@ -120,50 +120,21 @@ class Furnisher {
     return true;
   }
 
-  /// A real model in the place of a piece about as large, if there are any and the dice say so.
-  bool model_instead(const Frame& f, const Vec& size) {
-    if (!set_.scene.furniture || !d_.chance(0.5f)) return false;
-    return place_model(f, size);
+  /// Often a real model in its place.
+  Piece real(Role role, Piece otherwise) {
+    return model_or(set_, d_, role, plan_.kind, std::move(otherwise));
   }
-
-  bool place_model(const Frame& f, const Vec& size) {
-    const auto& models = set_.scene.furniture->models;
-    if (models.empty()) return false;
-    for (int attempt = 0; attempt < 25; ++attempt) {
-      const StoredModel& m = models[d_.below(static_cast<int>(models.size()))];
-      const Vec s = m.high - m.low;
-      if (m.door_or_window || m.elevation > 0.05f) continue;
-      if (s.x > size.x * 1.15f || s.z > size.z * 1.15f || s.y > std::max(size.y * 1.4f, 0.5f))
-        continue;
-      if (s.x < size.x * 0.55f || s.z < size.z * 0.45f || s.y < size.y * 0.3f) continue;
-      add_model(m, f * at(0, -m.low.y, size.z < s.z ? 0 : (s.z - size.z) / 2));
-      return true;
-    }
-    return false;
+  Piece a_shelf() { return real(Role::storage, shelf(set_, d_)); }
+  Piece a_cupboard(float low, float high) {
+    return real(Role::storage, cupboard(set_, d_, low, high));
   }
-
-  void add_model(const StoredModel& m, const Frame& f) {
-    Part p;
-    p.mesh = &m.mesh;
-    p.tree = &m.tree;
-    p.materials = &m.materials;
-    p.pictures = &m.pictures;
-    p.placed = true;
-    p.world = f;
-    p.low = {1e9f, 1e9f, 1e9f};
-    p.high = -p.low;
-    for (int c = 0; c < 8; ++c) {
-      const Vec q = f.point(
-          {c & 1 ? m.high.x : m.low.x, c & 2 ? m.high.y : m.low.y, c & 4 ? m.high.z : m.low.z});
-      p.low = min(p.low, q);
-      p.high = max(p.high, q);
-    }
-    set_.scene.parts.push_back(p);
-  }
+  Piece a_sofa(bool single) { return real(Role::couch, sofa(set_, d_, single)); }
+  Piece a_chair() { return real(Role::seat, chair(set_, d_)); }
+  Piece a_plant() { return real(Role::plant, plant(set_, d_)); }
 
   void draw(const Piece& p, const Frame& f) {
     stand(bounds_of(f, p.size.x, p.size.z), p.size.y);
-    if (!model_instead(f, p.size)) p.draw(set_, set_.solid(f));
+    p.draw(set_, set_.solid(f));
   }
 
   void stand(const Rect& r, float height) {
@@ -232,7 +203,7 @@ class Furnisher {
   /// A table with chairs around it, at most tucked under.
   void dining() {
     const bool round = d_.chance(0.3f);
-    const Piece t = round ? round_table(set_, d_) : table(set_, d_, false);
+    const Piece t = real(Role::table, round ? round_table(set_, d_) : table(set_, d_, false));
     const float margin = 1.1f;
     for (int attempt = 0; attempt < 14; ++attempt) {
       const Rect& r = plan_.rects[d_.below(static_cast<int>(plan_.rects.size()))];
@@ -242,7 +213,7 @@ class Furnisher {
       const float around = attempt < 8 ? margin : 0.2f;
       if (!free(bounds_of(f, t.size.x + around, t.size.z + around), 0, 1)) continue;
       draw(t, f);
-      const Piece seat = d_.chance(0.1f) ? stool(set_, d_) : chair(set_, d_);
+      const Piece seat = d_.chance(0.1f) ? stool(set_, d_) : a_chair();
       const int sides = std::max(1, static_cast<int>(t.size.x / 0.65f));
       const float full = d_.range(0.4f, 1);
       for (int i = 0; i < sides; ++i) {
@@ -274,14 +245,14 @@ class Furnisher {
     for (const Rect& q : plan_.rects) {
       if (r.x0 < q.x0 || r.x1 > q.x1 || r.z0 < q.z0 || r.z1 > q.z1) continue;
       stand(r, seat.size.y);
-      if (!model_instead(f, seat.size)) seat.draw(set_, set_.solid(f));
+      seat.draw(set_, set_.solid(f));
       return;
     }
   }
 
   /// A desk with its chair.
   void workplace(bool at_wall) {
-    const Piece t = desk(set_, d_);
+    const Piece t = d_.chance(0.7f) ? desk(set_, d_) : real(Role::table, desk(set_, d_));
     for (int attempt = 0; attempt < 12; ++attempt) {
       Frame f;
       if (at_wall) {
@@ -297,8 +268,8 @@ class Furnisher {
       }
       if (!free(bounds_of(f * at(0, 0, 0.3f), t.size.x, t.size.z + 0.6f), 0, 1.1f)) continue;
       draw(t, f);
-      seat_at(f, d_.chance(0.8f) ? office_chair(set_, d_) : chair(set_, d_), {0, 0, t.size.z / 2},
-              3.1415927f, 0.9f);
+      seat_at(f, d_.chance(0.8f) ? real(Role::seat, office_chair(set_, d_)) : a_chair(),
+              {0, 0, t.size.z / 2}, 3.1415927f, 0.9f);
       return;
     }
   }
@@ -354,31 +325,61 @@ class Furnisher {
   }
 
   Piece wall_piece() {
+    if (wants_model(set_, d_) && d_.chance(0.4f)) return real(Role::other, a_shelf());
     const int pick = d_.below(12);
-    if (pick < 3) return shelf(set_, d_);
-    if (pick < 5) return cupboard(set_, d_, 0.6f, 1.3f);
-    if (pick < 7) return cupboard(set_, d_, 1.4f, 2.2f);
+    if (pick < 3) return a_shelf();
+    if (pick < 5) return a_cupboard(0.6f, 1.3f);
+    if (pick < 7) return a_cupboard(1.4f, 2.2f);
     if (pick < 8) return table(set_, d_, false);
-    if (pick < 9) return plant(set_, d_);
-    if (pick < 10) return sofa(set_, d_, d_.chance(0.5f));
+    if (pick < 9) return a_plant();
+    if (pick < 10) return a_sofa(d_.chance(0.5f));
     return pick < 11 ? desk(set_, d_) : box_pile(set_, d_);
   }
 
   Piece loose_piece() {
+    if (wants_model(set_, d_) && d_.chance(0.4f)) return real(Role::other, a_chair());
     const int pick = d_.below(12);
-    if (pick < 3) return chair(set_, d_);
+    if (pick < 3) return a_chair();
     if (pick < 4) return office_chair(set_, d_);
-    if (pick < 6) return table(set_, d_, d_.chance(0.4f));
+    if (pick < 6) return real(Role::table, table(set_, d_, d_.chance(0.4f)));
     if (pick < 7) return round_table(set_, d_);
-    if (pick < 9) return plant(set_, d_);
-    if (pick < 10) return sofa(set_, d_, true);
-    return pick < 11 ? box_pile(set_, d_) : cupboard(set_, d_, 0.4f, 1.2f);
+    if (pick < 9) return a_plant();
+    if (pick < 10) return a_sofa(true);
+    return pick < 11 ? box_pile(set_, d_) : a_cupboard(0.4f, 1.2f);
+  }
+
+  /// What only models are: on walls, ceilings, doors, odd things.
+  void models(float share) {
+    const auto n = [&](float most) { return d_.below(1 + static_cast<int>(most * share)); };
+    float elevation = 0;
+    for (int i = n(4); i > 0; --i) {
+      const Piece p = hanging_model(set_, d_, false, elevation);
+      if (p.draw) hang(p, elevation, elevation + 0.05f);
+    }
+    for (int i = n(2); i > 0; --i) {
+      const Piece p = hanging_model(set_, d_, true, elevation);
+      const Rect& r = plan_.rects[0];
+      if (!p.draw || plan_.height - p.size.y < 1.9f) continue;
+      const Frame f = turned(static_cast<float>(d_.below(4)) * 1.5707963f,
+                             {d_.range(r.x0 + 0.4f, r.x1 - 0.4f), plan_.height - p.size.y,
+                              d_.range(r.z0 + 0.4f, r.z1 - 0.4f)});
+      p.draw(set_, set_.solid(f));
+    }
+    for (int i = n(2); i > 0; --i) {
+      const Piece p = real(Role::door, {});
+      if (p.draw) wall(p);
+    }
+    for (int i = n(3); i > 0; --i) {
+      const Piece p = real(Role::other, {});
+      if (p.draw) d_.chance(0.5f) ? wall(p) : loose(p);
+    }
   }
 
   void common(float share) {
     const bool narrow = plan_.kind == RoomKind::corridor || plan_.kind == RoomKind::bathroom;
     fill(share * d_.unit() * (narrow ? 0.06f : 0.3f));
     const auto n = [&](float most) { return d_.below(1 + static_cast<int>(most * share)); };
+    if (set_.scene.furniture) models(share);
     const bool home = plan_.kind == RoomKind::living_room || plan_.kind == RoomKind::bedroom;
     if (d_.chance(home ? 0.7f : 0.15f)) rug();
     for (int i = n(7); i > 0; --i) hang(wall_picture(set_, d_), 0.7f, 1.6f);
@@ -391,18 +392,19 @@ class Furnisher {
     if (d_.chance(0.1f)) hang(wall_screen(set_, d_), 0.8f, 1.3f);
     if (d_.chance(home ? 0.5f : 0.1f)) loose(floor_lamp(set_, d_));
     for (int i = n(plan_.kind == RoomKind::storage ? 1 : 4); i > 0; --i)
-      d_.chance(0.6f) ? wall(plant(set_, d_)) : loose(plant(set_, d_));
+      d_.chance(0.6f) ? wall(a_plant()) : loose(a_plant());
     for (int i = n(3); i > 0; --i) wall(bin(set_, d_));
     for (int i = n(3); i > 0; --i) loose(box_pile(set_, d_));
     for (int i = n(3); i > 0; --i) loose(bag(set_, d_));
-    for (int i = n(3); i > 0; --i) loose(d_.chance(0.5f) ? chair(set_, d_) : stool(set_, d_));
+    for (int i = n(3); i > 0; --i) loose(d_.chance(0.5f) ? a_chair() : stool(set_, d_));
     const bool messy = d_.chance(0.25f);
     for (int i = messy ? n(20) : 0; i > 0; --i) {
       const Rect& r = plan_.rects[0];
       const Frame f = turned(d_.range(-3, 3), {d_.range(r.x0 + 0.2f, r.x1 - 0.2f), 0,
                                                d_.range(r.z0 + 0.2f, r.z1 - 0.2f)});
-      if (free(bounds_of(f, 0.3f, 0.3f), 0, 0.3f))
-        clutter(set_, d_, set_.solid(f), 0.4f, 0.4f, 0.4f);
+      if (!free(bounds_of(f, 0.3f, 0.3f), 0, 0.3f)) continue;
+      if (wants_model(set_, d_) && model_clutter(set_, d_, f, 0.5f, 0.5f, 0.5f)) continue;
+      clutter(set_, d_, set_.solid(f), 0.4f, 0.4f, 0.4f);
     }
   }
 

@@ -21,7 +21,7 @@ class Furniture {
   /// number throws ps::Error that names the model.
   explicit Furniture(const std::vector<Model>& models);
 
-  /// @return how many models can be placed
+  /// @return how many models have something to show; those too large for rooms are not placed
   std::size_t size() const;
 
   std::shared_ptr<const FurnitureStore> share() const { return store_; }

@@ -2,6 +2,7 @@
 // Internal to the rooms room.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -10,19 +11,32 @@
 
 namespace ps::rooms {
 
+/// What a model can stand in for, by the words of its name.
+enum class Role { seat, couch, table, bed, storage, plant, door, other };
+constexpr int kRoles = 8;
+
+/// Where a model belongs, by its size and elevation.
+enum class Use { floor, top, wall, ceiling, none };
+
 struct StoredModel {
   std::string name, category;
   float elevation = 0;
-  bool door_or_window = false;
+  Role role = Role::other;
+  Use use = Use::none;
   Vec low, high;
+  bool flat_top = false;  ///< things can stand on it
   Mesh mesh;
   Tree tree;
   std::vector<Material> materials;
   std::vector<Picture> pictures;
+
+  Vec size() const { return high - low; }
 };
 
 struct FurnitureStore {
   std::vector<StoredModel> models;
+  std::array<std::vector<int>, kRoles> on_floor;  ///< indices of models by role
+  std::vector<int> on_top, on_wall, on_ceiling;
 };
 
 }  // namespace ps::rooms

@@ -32,6 +32,16 @@ Piece kitchen_row(Set& set, Dice& d, float width);
 Piece fridge(Set& set, Dice& d);
 Piece counter(Set& set, Dice& d);
 
+// pieces_models.cpp: real models, where the scene has a store of them
+/// @return true if there are models and the dice are for one
+bool wants_model(const Set& set, Dice& d);
+/// A model of this role, or the procedural piece. Mostly one that suits the kind of room.
+Piece model_or(Set& set, Dice& d, Role role, RoomKind kind, Piece otherwise);
+/// A model for a wall or ceiling and the height it wants; nothing to draw if there is none.
+Piece hanging_model(Set& set, Dice& d, bool ceiling, float& elevation);
+/// @return false if none of a few that were tried fits
+bool model_clutter(Set& set, Dice& d, const Frame& f, float width, float depth, float height);
+
 // pieces_small.cpp
 Piece plant(Set& set, Dice& d);
 Piece floor_lamp(Set& set, Dice& d);

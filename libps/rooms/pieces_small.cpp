@@ -366,7 +366,9 @@ void strew(Set& set, Dice& d, const Top& top, float fill) {
       const float x = -top.width / 2 + w * (static_cast<float>(i) + d.range(0.35f, 0.65f));
       const float z = -top.depth / 2 + l * (static_cast<float>(j) + d.range(0.35f, 0.65f));
       const float turn = d.chance(0.6f) ? d.range(-0.3f, 0.3f) : d.range(-3, 3);
-      clutter(set, d, set.solid(top.frame * turned(turn, {x, 0, z})), w * 0.8f, l * 0.8f, top.room);
+      const Frame f = top.frame * turned(turn, {x, 0, z});
+      if (wants_model(set, d) && model_clutter(set, d, f, w, l, top.room)) continue;
+      clutter(set, d, set.solid(f), w * 0.8f, l * 0.8f, top.room);
     }
   }
 }

@@ -7,14 +7,23 @@
 namespace ps::rooms {
 namespace {
 
-void add_part(Scene& scene, const Mesh& mesh, const Tree& tree, bool casts) {
-  Part p;
-  p.mesh = &mesh;
-  p.tree = &tree;
-  p.materials = &scene.materials;
-  p.pictures = &scene.pictures;
-  p.casts = casts;
-  scene.parts.push_back(p);
+/// The scene's own meshes come first.
+void gather_parts(Scene& scene) {
+  std::vector<Part> all(2);
+  all[0].mesh = &scene.solid;
+  all[0].tree = &scene.solid_tree;
+  all[1].mesh = &scene.lamps;
+  all[1].tree = &scene.lamp_tree;
+  all[1].casts = false;
+  for (Part& p : all) {
+    p.materials = &scene.materials;
+    p.pictures = &scene.pictures;
+  }
+  std::vector<std::array<Vec, 2>> boxes;
+  for (const Part& p : scene.parts) boxes.push_back({p.low, p.high});
+  scene.part_tree = Tree(boxes);
+  all.insert(all.end(), scene.parts.begin(), scene.parts.end());
+  scene.parts = std::move(all);
 }
 
 }  // namespace
@@ -31,8 +40,7 @@ Room::Room(std::uint64_t seed, const RoomOptions& options) {
   furnish(*scene, seed, options);
   scene->solid_tree = Tree(scene->solid);
   scene->lamp_tree = Tree(scene->lamps);
-  add_part(*scene, scene->solid, scene->solid_tree, true);
-  add_part(*scene, scene->lamps, scene->lamp_tree, false);
+  gather_parts(*scene);
   bake(*scene);
   scene_ = std::move(scene);
 }

@@ -6,80 +6,62 @@
 namespace ps::rooms {
 namespace {
 
-bool meets(const Part& part, const Rays& r, int i) {
-  if (r.reach[i] <= 0) return false;
-  const float low[3] = {part.low.x, part.low.y, part.low.z};
-  const float high[3] = {part.high.x, part.high.y, part.high.z};
-  float in = 0, out = r.reach[i];
-  for (int a = 0; a < 3; ++a) {
-    const float s = (low[a] - r.origin[a][i]) * r.inverse[a][i];
-    const float t = (high[a] - r.origin[a][i]) * r.inverse[a][i];
-    in = std::max(in, std::min(s, t));
-    out = std::min(out, std::max(s, t));
-  }
-  return in <= out;
-}
-
 /// World to part: axes are at right angles.
 Vec inward(const Frame& f, Vec d) {
   return {dot(d, f.ex) / dot(f.ex, f.ex), dot(d, f.ey) / dot(f.ey, f.ey),
           dot(d, f.ez) / dot(f.ez, f.ez)};
 }
 
-/// @return whether any ray of the packet can hit the part; `local` are these rays in its frame
-bool enter(const Part& part, const Rays& rays, Rays& local) {
-  bool any = false;
+/// The packet in the frame of a part.
+void to_part(const Part& part, const Rays& rays, Rays& local) {
   clear(local);
   for (int i = 0; i < kRays; ++i) {
-    if (!meets(part, rays, i)) continue;
-    any = true;
+    if (rays.reach[i] <= 0) continue;
     set_ray(local, i,
             inward(part.world, Vec{rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]} -
                                    part.world.origin),
             inward(part.world, {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]}),
             rays.reach[i]);
   }
-  return any;
 }
+
+constexpr int kOwnParts = 2;  ///< the scene's meshes, before the placed models
 
 }  // namespace
 
 void Scene::nearest(Rays& rays) const {
-  for (std::size_t p = 0; p < parts.size(); ++p) {
-    const Part& part = parts[p];
-    const int index = static_cast<int>(p);
-    if (!part.placed) {
-      rooms::nearest(*part.tree, index, rays);
-      continue;
-    }
+  for (int p = 0; p < kOwnParts; ++p) rooms::nearest(*parts[p].tree, p, rays);
+  std::uint32_t models[kMostParts];
+  const int count = reached(part_tree, rays, models);
+  for (int m = 0; m < count; ++m) {
+    const int p = kOwnParts + static_cast<int>(models[m]);
     Rays local;
-    if (!enter(part, rays, local)) continue;
-    rooms::nearest(*part.tree, index, local);
+    to_part(parts[p], rays, local);
+    rooms::nearest(*parts[p].tree, p, local);
     for (int i = 0; i < kRays; ++i) {
       if (local.face[i] < 0) continue;
       rays.reach[i] = local.reach[i];
       rays.u[i] = local.u[i];
       rays.v[i] = local.v[i];
       rays.face[i] = local.face[i];
-      rays.part[i] = index;
+      rays.part[i] = p;
     }
   }
 }
 
 void Scene::blocked(Rays& rays) const {
-  for (const Part& part : parts) {
-    if (!part.casts) continue;
-    if (!part.placed) {
-      rooms::blocked(*part.tree, rays);
-      continue;
-    }
+  for (int p = 0; p < kOwnParts; ++p) {
+    if (parts[p].casts) rooms::blocked(*parts[p].tree, rays);
+  }
+  std::uint32_t models[kMostParts];
+  const int count = reached(part_tree, rays, models);
+  for (int m = 0; m < count; ++m) {
+    const Part& part = parts[kOwnParts + models[m]];
     Rays local;
-    if (!enter(part, rays, local)) continue;
-    float before[kRays];
-    for (int i = 0; i < kRays; ++i) before[i] = local.reach[i];
+    to_part(part, rays, local);
     rooms::blocked(*part.tree, local);
     for (int i = 0; i < kRays; ++i) {
-      if (before[i] > 0 && local.reach[i] < 0) rays.reach[i] = -1;
+      if (local.reach[i] < 0) rays.reach[i] = -1;
     }
   }
 }

@@ -90,12 +90,15 @@ struct Part {
   bool casts = true;    ///< shadows
 };
 
+constexpr std::size_t kMostParts = 256;
+
 struct Scene {
   Mesh solid, lamps;  ///< lamps cast no shadow
   Tree solid_tree, lamp_tree;
   std::vector<Material> materials;
   std::vector<Picture> pictures;
-  std::vector<Part> parts;  ///< the two above and placed models
+  std::vector<Part> parts;  ///< the two above, then placed models
+  Tree part_tree;           ///< boxes of placed models
   std::vector<Space> spaces;
   std::vector<LightGroup> lights;
   std::shared_ptr<const FurnitureStore> furniture;

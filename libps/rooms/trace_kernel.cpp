@@ -136,6 +136,28 @@ void PS_JOIN(blocked_, PS_ISA)(const TraceNode* nodes, const TraceTriangle* tria
   }
 }
 
+int PS_JOIN(reached_, PS_ISA)(const TraceNode* nodes, const TraceTriangle* triangles,
+                              const Rays* rays, uint32_t* out) {
+  const int first = lead(*rays);
+  if (first < 0) return 0;
+  uint32_t stack[64];
+  int size = 0, count = 0;
+  stack[size++] = 0;
+  while (size > 0) {
+    const TraceNode& node = nodes[stack[--size]];
+    if (!meets_box(node, *rays)) continue;
+    if (node.count > 0) {
+      for (uint32_t t = node.first; t < node.first + node.count; ++t)
+        out[count++] = triangles[t].face;
+    } else {
+      const uint32_t swap = rays->direction[node.axis][first] > 0 ? 0 : 1;
+      stack[size++] = node.first + 1 - swap;
+      stack[size++] = node.first + swap;
+    }
+  }
+  return count;
+}
+
 }  // namespace trace_kernel
 }  // namespace rooms
 }  // namespace ps

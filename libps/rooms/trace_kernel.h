@@ -37,8 +37,14 @@ typedef void Nearest(const TraceNode* nodes, const TraceTriangle* triangles, int
 /// Sets `reach` to -1 for each ray that hits anything.
 typedef void Blocked(const TraceNode* nodes, const TraceTriangle* triangles, Rays* rays);
 
+/// Writes the `face` of each triangle whose leaf any ray may reach, nearer ones mostly first: a
+/// tree of boxes, whose triangles say which box. @return how many
+typedef int Reached(const TraceNode* nodes, const TraceTriangle* triangles, const Rays* rays,
+                    uint32_t* out);
+
 Nearest nearest_baseline, nearest_avx2, nearest_avx512;
 Blocked blocked_baseline, blocked_avx2, blocked_avx512;
+Reached reached_baseline, reached_avx2, reached_avx512;
 
 }  // namespace trace_kernel
 }  // namespace rooms

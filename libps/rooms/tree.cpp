@@ -9,8 +9,8 @@ namespace ps::rooms {
 namespace {
 
 constexpr int kBins = 16;
-constexpr int kLargestLeaf = 4;
-constexpr int kDeepest = 56;  ///< the kernel's stack holds 64
+constexpr int kLargestLeaf = 4;  ///< triangles
+constexpr int kDeepest = 56;     ///< the kernel's stack holds 64
 
 struct Box {
   Vec low = {1e30f, 1e30f, 1e30f}, high = {-1e30f, -1e30f, -1e30f};
@@ -83,7 +83,8 @@ Split best_split(const Item* items, int count, const Box& centers) {
 
 class Builder {
  public:
-  Builder(std::vector<Item>& items, std::vector<TraceNode>& nodes) : items_(items), nodes_(nodes) {}
+  Builder(std::vector<Item>& items, std::vector<TraceNode>& nodes, int leaf)
+      : items_(items), nodes_(nodes), leaf_(leaf) {}
 
   void build(std::uint32_t node, int begin, int end, int depth) {
     Box box, centers;
@@ -97,7 +98,7 @@ class Builder {
                 static_cast<std::uint16_t>(end - begin),
                 0};
     int middle = begin;
-    if (end - begin > kLargestLeaf && depth < kDeepest) middle = split(begin, end, centers, n.axis);
+    if (end - begin > leaf_ && depth < kDeepest) middle = split(begin, end, centers, n.axis);
     if (middle == begin && end - begin > 0xffff) middle = (begin + end) / 2;
     if (middle > begin) {
       n.first = static_cast<std::uint32_t>(nodes_.size());
@@ -125,6 +126,7 @@ class Builder {
 
   std::vector<Item>& items_;
   std::vector<TraceNode>& nodes_;
+  int leaf_;
 };
 
 }  // namespace
@@ -145,7 +147,7 @@ Tree::Tree(const Mesh& mesh) {
   if (items.empty()) return;
   nodes.reserve(items.size());
   nodes.resize(1);
-  Builder(items, nodes).build(0, 0, static_cast<int>(items.size()), 0);
+  Builder(items, nodes, kLargestLeaf).build(0, 0, static_cast<int>(items.size()), 0);
   triangles.reserve(items.size());
   for (const Item& item : items) {
     const auto& c = mesh.faces[item.face].corners;
@@ -153,6 +155,17 @@ Tree::Tree(const Mesh& mesh) {
     const Vec a = mesh.corners[c[1]].position - p, b = mesh.corners[c[2]].position - p;
     triangles.push_back({{p.x, p.y, p.z}, {a.x, a.y, a.z}, {b.x, b.y, b.z}, item.face});
   }
+}
+
+Tree::Tree(const std::vector<std::array<Vec, 2>>& boxes) {
+  std::vector<Item> items;
+  for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+    items.push_back({{boxes[i][0], boxes[i][1]}, (boxes[i][0] + boxes[i][1]) * 0.5f, i});
+  }
+  if (items.empty()) return;
+  nodes.resize(1);
+  Builder(items, nodes, 1).build(0, 0, static_cast<int>(items.size()), 0);
+  for (const Item& item : items) triangles.push_back({{}, {}, {}, item.face});
 }
 
 void clear(Rays& rays) {
@@ -184,19 +197,22 @@ namespace {
 struct Kernels {
   trace_kernel::Nearest* nearest;
   trace_kernel::Blocked* blocked;
+  trace_kernel::Reached* reached;
 };
 
 Kernels choose() {
 #ifdef PS_X86_KERNELS
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
       __builtin_cpu_supports("avx512dq")) {
-    return {trace_kernel::nearest_avx512, trace_kernel::blocked_avx512};
+    return {trace_kernel::nearest_avx512, trace_kernel::blocked_avx512,
+            trace_kernel::reached_avx512};
   }
   if (__builtin_cpu_supports("avx2")) {
-    return {trace_kernel::nearest_avx2, trace_kernel::blocked_avx2};
+    return {trace_kernel::nearest_avx2, trace_kernel::blocked_avx2, trace_kernel::reached_avx2};
   }
 #endif
-  return {trace_kernel::nearest_baseline, trace_kernel::blocked_baseline};
+  return {trace_kernel::nearest_baseline, trace_kernel::blocked_baseline,
+          trace_kernel::reached_baseline};
 }
 
 const Kernels kKernels = choose();
@@ -213,6 +229,11 @@ void blocked(const Tree& tree, Rays& rays) {
   if (!tree.nodes.empty()) {
     kKernels.blocked(tree.nodes.data(), tree.triangles.data(), &rays);
   }
+}
+
+int reached(const Tree& tree, const Rays& rays, std::uint32_t* out) {
+  if (tree.nodes.empty()) return 0;
+  return kKernels.reached(tree.nodes.data(), tree.triangles.data(), &rays, out);
 }
 
 }  // namespace ps::rooms

@@ -17,6 +17,8 @@ struct Tree {
 
   Tree() = default;
   explicit Tree(const Mesh& mesh);
+  /// A tree of boxes (low, high), for reached().
+  explicit Tree(const std::vector<std::array<Vec, 2>>& boxes);
 };
 
 /// Empties the packet: no rays.
@@ -27,5 +29,8 @@ void set_ray(Rays& rays, int i, Vec origin, Vec direction, float reach);
 /// See trace_kernel.h; nothing happens for an empty tree.
 void nearest(const Tree& tree, int part, Rays& rays);
 void blocked(const Tree& tree, Rays& rays);
+/// @param out  room for as many as there are boxes
+/// @return how many boxes of the tree the rays may reach
+int reached(const Tree& tree, const Rays& rays, std::uint32_t* out);
 
 }  // namespace ps::rooms

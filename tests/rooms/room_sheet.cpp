@@ -8,6 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "io/furniture.h"
 #include "libps/rooms/camera_effects.h"
 #include "libps/rooms/shot.h"
 
@@ -48,6 +49,14 @@ int main(int argc, char** argv) {
   const int rows = number(2, 4), columns = number(3, 6), size = number(4, 256),
             first = number(5, 1);
   const bool depth = number(6, 1) != 0, effects = number(7, 1) != 0;
+  std::vector<rooms::Model> models;
+  if (argc > 8) {
+    const std::string path = argv[8];
+    models = ps::read_furniture(path == "-" ? ps::kDebianFurniture : path).models;
+  }
+  const rooms::Furniture furniture(models);
+  rooms::RoomOptions room_options;
+  if (!models.empty()) room_options.furniture = &furniture;
   const int tall = depth ? 2 * size : size;
   cv::Mat3b sheet(rows * tall, columns * size);
   std::vector<float> medians;
@@ -56,7 +65,7 @@ int main(int argc, char** argv) {
   const auto seconds = [](auto a, auto b) { return std::chrono::duration<double>(b - a).count(); };
   for (int i = 0; i < rows * columns; ++i) {
     const auto t0 = now();
-    const rooms::Room room(first + i);
+    const rooms::Room room(first + i, room_options);
     const auto t1 = now();
     rooms::CameraOptions options;
     options.width = options.height = size;
