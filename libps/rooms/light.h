@@ -20,6 +20,9 @@ struct Lit {
 /// out.
 void add_direct(const Scene& scene, Lit* lit);
 
+/// Finds which lights reach a space at all, by random rays: sets its lit_by and sunny.
+void find_lights(const Scene& scene, Space& space);
+
 /// Fills the probes of all spaces with bounce light and sets the exposure.
 void bake(Scene& scene);
 

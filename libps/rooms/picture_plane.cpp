@@ -29,20 +29,21 @@ void over_lines(const PicturePlane& p, F f) {
   }
 }
 
-/// The mean over five pixels of one surface; ends weigh half, so that each of four samples that
-/// repeat weighs the same.
+/// The mean over five pixels of one surface, `apart` pixels apart; ends weigh half, so that each of
+/// four samples that repeat weighs the same.
 void share(std::vector<Vec>& image, std::vector<Vec>& line, const Line& l,
-           const std::vector<std::uint16_t>& ends) {
+           const std::vector<std::uint16_t>& ends, int apart) {
   static const float weight[5] = {0.5f, 1, 1, 1, 0.5f};
   for (int i = 0; i < l.count; ++i) line[i] = image[l.start + i * l.step];
   for (int i = 0; i < l.count; ++i) {
     const std::uint16_t end = ends[l.start + i * l.step];
     Vec sum;
     float total = 0;
-    for (int k = std::max(0, i - 2); k <= std::min(l.count - 1, i + 2); ++k) {
-      if (ends[l.start + k * l.step] != end) continue;
-      sum += line[k] * weight[k - i + 2];
-      total += weight[k - i + 2];
+    for (int n = -2; n <= 2; ++n) {
+      const int k = i + n * apart;
+      if (k < 0 || k >= l.count || ends[l.start + k * l.step] != end) continue;
+      sum += line[k] * weight[n + 2];
+      total += weight[n + 2];
     }
     image[l.start + i * l.step] = sum * (1 / total);
   }
@@ -98,7 +99,7 @@ void PicturePlane::find_ends() {
 
 void PicturePlane::smooth_light() {
   std::vector<Vec> line(std::max(width, height));
-  over_lines(*this, [&](const Line& l, const auto& ends) { share(light, line, l, ends); });
+  over_lines(*this, [&](const Line& l, const auto& ends) { share(light, line, l, ends, 1); });
   for (const int apart : {3, 5}) {
     over_lines(*this,
                [&](const Line& l, const auto& ends) { share_alike(light, line, l, ends, apart); });
@@ -113,7 +114,10 @@ void PicturePlane::smooth_mirror() {
   }
   if (!any) return;
   std::vector<Vec> line(std::max(width, height));
-  over_lines(*this, [&](const Line& l, const auto& ends) { share(mirror, line, l, ends); });
+  for (const int apart : {1, 4}) {
+    over_lines(*this,
+               [&](const Line& l, const auto& ends) { share(mirror, line, l, ends, apart); });
+  }
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const Pixel& p = pixels[i];
     if (p.reflected > 0 && p.material->roughness < kRough) mirror[i] = before[i];

@@ -77,7 +77,7 @@ void LightGroup::add(Emitter e) {
 }
 
 Vec Scene::evened(Vec light) const {
-  light += Vec{1, 1, 1} * (0.02f * middle_light);  // no place is quite dark
+  light += Vec{1, 1, 1} * (0.04f * middle_light);  // no place is quite dark
   return light * std::pow(luminance(light) / middle_light, -evening);
 }
 

@@ -33,6 +33,26 @@ float fresnel(const Material& m, float cosine) {
   return share > kLeastMirror ? share : 0;
 }
 
+/// For each pixel of a block: samples of the lamps, and a direction of the upper half, spread by
+/// the cosine.
+struct BlockSamples {
+  float s[kRays], t[kRays], choice[kRays];
+  Vec up[kRays];
+
+  BlockSamples() {
+    for (int k = 0; k < kRays; ++k) {
+      const int o = kOrder[k];
+      s[k] = (static_cast<float>(o) + 0.5f) / kRays;
+      t[k] = reversed(o);
+      choice[k] = (static_cast<float>(o * 7 % kRays) + 0.5f) / kRays;
+      const float r = std::sqrt(t[k]), a = 2 * kPi * s[k];
+      up[k] = {r * std::cos(a), r * std::sin(a), std::sqrt(1 - r * r)};
+    }
+  }
+};
+
+const BlockSamples kSamples;
+
 /// Turns (x, y, z) with z up so that z stands on n: Duff et al., "Building an Orthonormal Basis,
 /// Revisited" (2017).
 Vec stand_on(Vec n, float x, float y, float z) {
@@ -136,18 +156,14 @@ void Shooter::light(int x0, int y0) {
     const Pixel& p = plane_.pixels[plane_.index(x, y)];
     if (!p.material) continue;
     any = true;
-    const int o = kOrder[k];
     lit[k].space = &scene_.space_at(p.position);
     lit[k].position = p.position + p.flat * kAbove;
     lit[k].normal = p.normal;
-    lit[k].s = (static_cast<float>(o) + 0.5f) / 16;
-    lit[k].t = reversed(o);
-    lit[k].choice = (static_cast<float>(o * 7 % 16) + 0.5f) / 16;
-    // Directions spread by the cosine, to find what darkens a corner.
-    const float r = std::sqrt(lit[k].t), a = 2 * kPi * lit[k].s;
-    set_ray(rays, k, lit[k].position,
-            stand_on(p.flat, r * std::cos(a), r * std::sin(a), std::sqrt(1 - r * r)),
-            kAmbientReach);
+    lit[k].s = kSamples.s[k];
+    lit[k].t = kSamples.t[k];
+    lit[k].choice = kSamples.choice[k];
+    const Vec up = kSamples.up[k];  // to find what darkens a corner
+    set_ray(rays, k, lit[k].position, stand_on(p.flat, up.x, up.y, up.z), kAmbientReach);
   }
   if (!any) return;
   scene_.nearest(rays);
@@ -219,6 +235,7 @@ void Shooter::reflect(const std::uint32_t* pixels, int count) {
     }
     const Vec ambient = lit[k].space->probes.irradiance(lit[k].position, lit[k].normal);
     out = colors[k] * scene_.evened((lit[k].irradiance + ambient) * (1 / kPi)) + emission[k];
+    out = min(out, Vec{1, 1, 1} * (4 / scene_.exposure));  // one bright speck is grain
   }
 }
 

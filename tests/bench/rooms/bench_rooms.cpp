@@ -87,7 +87,7 @@ void training_images(benchmark::State& state) {
 
 }  // namespace
 
-// Each round goes over all rooms.
+// Each measurement goes over all rooms.
 BENCHMARK(make_room)->Iterations(2 * kRooms)->Unit(benchmark::kMillisecond);
 BENCHMARK(find_camera)->Iterations(8 * kRooms)->Unit(benchmark::kMillisecond);
 BENCHMARK(shoot)->Iterations(4 * kRooms)->Unit(benchmark::kMillisecond);
@@ -95,4 +95,8 @@ BENCHMARK(shoot_depth)->Iterations(8 * kRooms)->Unit(benchmark::kMillisecond);
 BENCHMARK(degrade)->Iterations(4 * kRooms)->Unit(benchmark::kMillisecond);
 BENCHMARK(training_images)->Iterations(2 * kRooms)->Unit(benchmark::kMillisecond);
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  some_cameras();  // not to be measured
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}
