@@ -7,7 +7,12 @@ namespace ps::apps {
 
 /// Thrown by throw_if_interrupted(), so that destructors remove what is half-written.
 struct Interrupted : std::exception {
-  const char* what() const noexcept override { return "interrupted"; }
+  explicit Interrupted(const char* message = "interrupted; nothing was written")
+      : message_(message) {}
+  const char* what() const noexcept override { return message_; }
+
+ private:
+  const char* message_;  ///< a literal: what became of the outputs
 };
 
 /// @brief From now on the first SIGINT, SIGTERM or SIGHUP is noted instead of ending the program; a

@@ -115,8 +115,8 @@ CLI::Validator whole_in(std::uint64_t low, std::uint64_t high) {
   return CLI::Validator(check, high < UINT64_MAX ? range : "");
 }
 
-int report_failure() noexcept try { throw; } catch (const Interrupted&) {
-  fail("interrupted; nothing was written");
+int report_failure() noexcept try { throw; } catch (const Interrupted& interrupted) {
+  fail(interrupted.what());
   die_of_interrupt();
 } catch (const std::bad_alloc&) {
   return fail("out of memory; try fewer or smaller views, or a smaller --size");

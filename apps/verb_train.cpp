@@ -95,6 +95,7 @@ void run_train(TrainArguments& a, const CLI::App& verb, const Context& context) 
   note_interrupts();
   const Stopwatch total;
   std::unique_ptr<Progress> bar;
+  bool interrupted = false;
   const train::TrainProgress progress = [&](const train::TrainEvent& event) {
     if (!bar)
       bar = std::make_unique<Progress>(context, "train " + o.stage,
@@ -107,9 +108,9 @@ void run_train(TrainArguments& a, const CLI::App& verb, const Context& context) 
     try {
       bar->update(static_cast<std::size_t>(event.step));
     } catch (const Interrupted&) {
-      return false;
+      interrupted = true;  // libtorch's part of the program must not be unwound
     }
-    return true;
+    return !interrupted;
   };
   train::TrainReport done;
   function_of_part<decltype(pixelsynth_train)>("train", "pixelsynth_train")(o, progress, &done);
@@ -128,7 +129,7 @@ void run_train(TrainArguments& a, const CLI::App& verb, const Context& context) 
   std::snprintf(what, sizeof what, "%s, step %lld, %.1f images/s", o.stage.c_str(),
                 static_cast<long long>(done.steps), done.images_per_second);
   end_run(context, report, o.out.string(), what);
-  throw_if_interrupted();
+  if (interrupted) throw Interrupted("interrupted; the same command goes on from the checkpoint");
 }
 
 }  // namespace
@@ -138,6 +139,7 @@ void add_train(CLI::App& program, const Context& context) {
   train->require_subcommand(1);
   add_train_data(*train, context);
   const std::map<std::string, std::string> stages = {
+      {"classifier", "What kind of room it is, for the entropy signal."},
       {"vqvae", "The autoencoder: pictures as codes and back."},
       {"depth", "The depth network, on true depth."},
       {"refine", "The refinement network and the discriminator; needs --codes."},

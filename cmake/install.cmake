@@ -10,9 +10,14 @@ install(TARGETS ${rooms} pixelsynth_pcl EXPORT pixelsynth-targets
 install(TARGETS pixelsynth RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/weights DESTINATION ${CMAKE_INSTALL_DATADIR}/pixelsynth OPTIONAL)
 install(TARGETS pixelsynth_viewer pixelsynth_video LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/pixelsynth)
+if(PIXELSYNTH_TORCH)
+  install(TARGETS pixelsynth_trainer LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/pixelsynth)
+endif()
 
+# The trainer is a program's part, not a library for others: it stands on whichever libtorch is there.
 # A header that says "// Internal to ..." first is its room's own affair.
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR} libps/*.h io/*.h)
+list(FILTER headers EXCLUDE REGEX "^libps/train/")
 foreach(header IN LISTS headers)
   file(STRINGS ${header} internal LIMIT_COUNT 1 REGEX "^// Internal to ")
   if(NOT internal)

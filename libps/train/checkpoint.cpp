@@ -93,7 +93,7 @@ std::int64_t load_checkpoint(Stage& stage, const TrainOptions& options) {
   return value(0);
 }
 
-fs::path save_weights(Stage& stage, const TrainOptions& options) {
+fs::path save_weights(Stage& stage, const TrainOptions& options, std::int64_t step) {
   TensorMap files;
   for (const auto& network : stage.networks()) {
     if (!network.shipped) continue;
@@ -102,7 +102,11 @@ fs::path save_weights(Stage& stage, const TrainOptions& options) {
     network.adam->swap_average();
   }
   const fs::path path = options.out / "weights.safetensors";
-  write_safetensors(path, files);
+  Metadata words = stage.metadata();
+  words["stage"] = options.stage;
+  words["seed"] = std::to_string(options.seed);
+  words["steps"] = std::to_string(step);
+  write_safetensors(path, files, words);
   return path;
 }
 
@@ -111,7 +115,9 @@ TensorsByName read_tensors(const fs::path& path) { return tensors_of(read_weight
 void load_weights(Stage& stage, const fs::path& path) {
   const TensorsByName tensors = read_tensors(path);
   for (const auto& network : stage.networks()) {
-    if (network.shipped) network.parameters->load(tensors, path.string());
+    if (!network.shipped) continue;
+    network.parameters->load(tensors, path.string());
+    network.adam->restart_average();
   }
 }
 

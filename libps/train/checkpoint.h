@@ -16,9 +16,10 @@ void save_checkpoint(Stage& stage, const TrainOptions& options, std::int64_t ste
 /// Throws ps::Error when there is one of another stage, width, seed, batch or number of steps.
 std::int64_t load_checkpoint(Stage& stage, const TrainOptions& options);
 
-/// @brief The averaged weights of what is shipped, in `out/weights.safetensors`.
+/// @brief The averaged weights of what is shipped, with what their reader has to know, in
+/// `out/weights.safetensors`.
 /// @return that path
-std::filesystem::path save_weights(Stage& stage, const TrainOptions& options);
+std::filesystem::path save_weights(Stage& stage, const TrainOptions& options, std::int64_t step);
 
 /// @brief All tensors of a file of weights, under the project's names, as F32.
 TensorsByName read_tensors(const std::filesystem::path& path);

@@ -49,7 +49,7 @@ class DepthStage : public Stage {
  public:
   DepthStage(const TrainOptions& options, torch::Device device)
       : net_(options.width > 0 ? options.width : kShippedWidth, options.seed),
-        adam_(prepared(net_, device), {}) {}
+        adam_(on_device(net_.parameters, device), {}) {}
 
   StageDefaults defaults() const override { return {8, 12000, 1.5e-3}; }
 
@@ -108,11 +108,6 @@ class DepthStage : public Stage {
   }
 
  private:
-  static Parameters& prepared(DepthNet& net, torch::Device device) {
-    net.parameters.to(device);
-    return net.parameters;
-  }
-
   DepthNet net_;
   Adam adam_;
 };

@@ -143,6 +143,11 @@ bool Adam::step(double learning_rate) {
   return true;
 }
 
+void Adam::restart_average() {
+  const torch::NoGradGuard guard;
+  for (auto& [name, average] : average_) average.copy_(parameters_[name].detach());
+}
+
 void Adam::swap_average() {
   const torch::NoGradGuard guard;
   for (auto& [name, average] : average_) {

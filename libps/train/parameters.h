@@ -67,6 +67,8 @@ class Adam {
   /// @return whether it was taken
   bool step(double learning_rate);
 
+  /// @brief Begins the average anew with the weights as they are.
+  void restart_average();
   /// @brief Exchanges the weights with their average; called twice it does nothing.
   void swap_average();
 

@@ -174,6 +174,7 @@ PixelCnn::PixelCnn(int f, int codes, std::uint64_t seed)
     }
   }
   add_normed(p, "nin_out.lin_a", f, codes);
+  p.state("code_counts", torch::ones({codes}));
 }
 
 Tensor PixelCnn::forward(const Tensor& codes, const Tensor& order) const {

@@ -20,6 +20,7 @@ TapIndex tap_index(const Tensor& order, int height, int width, int dilation, boo
 class PixelCnn {
  public:
   PixelCnn(int f, int codes, std::uint64_t seed);
+  /// Beside the network's own: `code_counts`, how often training saw each code.
   Parameters parameters;
 
   int codes() const { return codes_; }

@@ -27,7 +27,7 @@ class PixelCnnStage : public Stage {
   PixelCnnStage(const TrainOptions& options, torch::Device device)
       : autoencoder_(read_autoencoder(options.codes, device)),
         net_(options.width > 0 ? options.width : kShippedWidth, autoencoder_.codes(), options.seed),
-        adam_(prepared(net_, device), adam_options()) {}
+        adam_(on_device(net_.parameters, device), adam_options()) {}
 
   StageDefaults defaults() const override { return {16, 12000, 1e-3}; }
   Augmentation augmentation() const override { return {true, true, true}; }
@@ -107,11 +107,6 @@ class PixelCnnStage : public Stage {
     Adam::Options options;
     options.beta2 = 0.999;
     return options;
-  }
-  static Parameters& prepared(PixelCnn& net, torch::Device device) {
-    net.parameters.state("code_counts", torch::ones({net.codes()}));
-    net.parameters.to(device);
-    return net.parameters;
   }
 
   Tensor codes_of(const Batch& batch) const {

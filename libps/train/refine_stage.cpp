@@ -40,8 +40,8 @@ class RefineStage : public Stage {
       : autoencoder_(read_autoencoder(options.codes, device)),
         net_(options.width > 0 ? options.width : kShippedWidth, options.seed),
         critic_(options.width > 0 ? options.width : kShippedWidth, options.seed + 1),
-        adam_(prepared(net_.parameters, device), betas()),
-        critic_adam_(prepared(critic_.parameters, device), betas()) {
+        adam_(on_device(net_.parameters, device), betas()),
+        critic_adam_(on_device(critic_.parameters, device), betas()) {
     if (!options.features.empty()) lpips_ = std::make_unique<Lpips>(options.features, device);
   }
 
@@ -120,10 +120,6 @@ class RefineStage : public Stage {
     options.beta1 = 0.5;
     options.beta2 = 0.9;
     return options;
-  }
-  static Parameters& prepared(Parameters& parameters, torch::Device device) {
-    parameters.to(device);
-    return parameters;
   }
 
   Question question_of(const Batch& batch) const {

@@ -50,6 +50,10 @@ class Stage {
   virtual std::map<std::string, std::string> metadata() const { return {}; }
 };
 
+/// @return the parameters, moved to the device
+Parameters& on_device(Parameters& parameters, torch::Device device);
+
+std::unique_ptr<Stage> make_classifier_stage(const TrainOptions& options, torch::Device device);
 std::unique_ptr<Stage> make_depth_stage(const TrainOptions& options, torch::Device device);
 std::unique_ptr<Stage> make_pixelcnn_stage(const TrainOptions& options, torch::Device device);
 std::unique_ptr<Stage> make_refine_stage(const TrainOptions& options, torch::Device device);

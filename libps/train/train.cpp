@@ -21,10 +21,12 @@ using Clock = std::chrono::steady_clock;
 using Maker = std::unique_ptr<Stage> (*)(const TrainOptions&, torch::Device);
 
 const std::vector<std::pair<std::string, Maker>>& stages() {
-  static const std::vector<std::pair<std::string, Maker>> all = {{"vqvae", make_vqvae_stage},
-                                                                 {"depth", make_depth_stage},
-                                                                 {"refine", make_refine_stage},
-                                                                 {"pixelcnn", make_pixelcnn_stage}};
+  static const std::vector<std::pair<std::string, Maker>> all = {
+      {"vqvae", make_vqvae_stage},
+      {"depth", make_depth_stage},
+      {"classifier", make_classifier_stage},
+      {"refine", make_refine_stage},
+      {"pixelcnn", make_pixelcnn_stage}};
   return all;
 }
 
@@ -120,7 +122,7 @@ class Run {
       if (step_ % options_.save_every == 0) save_checkpoint(*stage_, options_, step_);
     }
     save_checkpoint(*stage_, options_, step_);
-    report_.weights = save_weights(*stage_, options_);
+    report_.weights = save_weights(*stage_, options_, step_);
     report_.steps = step_;
     report_.seconds = seconds_since(start);
     report_.images_per_second =
@@ -164,7 +166,7 @@ class Run {
     }
     for (const auto& network : stage_->networks()) network.adam->swap_average();
     report_.scores = scores;
-    save_weights(*stage_, options_);
+    save_weights(*stage_, options_, step_);
     const Sheet sheet = sheet_of(pictures);
     return tell({step_, options_.steps, scores, true, &sheet});
   }
@@ -213,6 +215,11 @@ class Run {
 };
 
 }  // namespace
+
+Parameters& on_device(Parameters& parameters, torch::Device device) {
+  parameters.to(device);
+  return parameters;
+}
 
 const std::vector<std::string>& stage_names() {
   static const std::vector<std::string> names = [] {

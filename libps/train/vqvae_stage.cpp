@@ -28,7 +28,8 @@ Tensor random_part(const Tensor& color, torch::Generator& generator) {
 class VqvaeStage : public Stage {
  public:
   VqvaeStage(const TrainOptions& options, torch::Device device)
-      : net_(widths_of(options.width), options.seed), adam_(prepared(net_, device), {}) {}
+      : net_(widths_of(options.width), options.seed),
+        adam_(on_device(net_.parameters, device), {}) {}
 
   StageDefaults defaults() const override { return {24, 8000, 1e-3}; }
 
@@ -74,11 +75,6 @@ class VqvaeStage : public Stage {
   std::vector<Trained> networks() override { return {{&net_.parameters, &adam_}}; }
 
  private:
-  static Parameters& prepared(Autoencoder& net, torch::Device device) {
-    net.parameters.to(device);
-    return net.parameters;
-  }
-
   Autoencoder net_;
   Adam adam_;
 };
