@@ -68,16 +68,17 @@ void tone(Shot& s, Dice& d, const EffectOptions& o) {
 }
 
 /// A small kernel along each axis: sigma pixels, in x and in y.
+constexpr int kMostReach = 8;
 std::vector<float> blurred(const Shot& s, float sigma_x, float sigma_y) {
   std::vector<float> image = s.color, out = image;
   for (const bool along_x : {true, false}) {
     const float sigma = along_x ? sigma_x : sigma_y;
     if (sigma < 0.2f) continue;
-    const int reach = std::min(4, static_cast<int>(2.5f * sigma + 1));
-    float weight[9], total = 0;
+    const int reach = std::min(kMostReach, static_cast<int>(2.5f * sigma + 1));
+    float weight[2 * kMostReach + 1], total = 0;
     for (int k = -reach; k <= reach; ++k) {
       const float q = static_cast<float>(k) / sigma;
-      total += weight[k + 4] = std::exp(-0.5f * q * q);
+      total += weight[k + kMostReach] = std::exp(-0.5f * q * q);
     }
     for (int y = 0; y < s.height; ++y) {
       for (int x = 0; x < s.width; ++x) {
@@ -86,7 +87,7 @@ std::vector<float> blurred(const Shot& s, float sigma_x, float sigma_y) {
           const int i = along_x ? std::clamp(x + k, 0, s.width - 1) : x;
           const int j = along_x ? y : std::clamp(y + k, 0, s.height - 1);
           const float* p = &image[(static_cast<std::size_t>(j) * s.width + i) * 3];
-          for (int c = 0; c < 3; ++c) sum[c] += weight[k + 4] * p[c];
+          for (int c = 0; c < 3; ++c) sum[c] += weight[k + kMostReach] * p[c];
         }
         for (int c = 0; c < 3; ++c)
           out[(static_cast<std::size_t>(y) * s.width + x) * 3 + c] = sum[c] / total;
@@ -100,7 +101,7 @@ std::vector<float> blurred(const Shot& s, float sigma_x, float sigma_y) {
 void focus(Shot& s, Dice& d, const EffectOptions& o) {
   if (o.blur > 0 && d.chance(0.6f)) {
     const float sigma = o.blur * d.unit() * d.unit() * 1.3f;
-    const float motion = d.chance(0.25f) ? o.blur * d.range(0.5f, 2) : 0;
+    const float motion = d.chance(0.3f) ? o.blur * d.range(0.4f, 2.2f) : 0;
     const bool across = d.chance(0.7f);
     s.color = blurred(s, sigma + (across ? motion : 0), sigma + (across ? 0 : motion));
   }

@@ -50,6 +50,8 @@ class Furnisher {
         some(0, 2, [&] { wall(a_cupboard(0.35f, 1.1f)); });
         maybe(0.4f, [&] { dining(); });
         maybe(0.6f, [&] { hang(wall_screen(set_, d_), 0.7f, 1.2f); });
+        maybe(0.1f, [&] { wall(piano(set_, d_)); });
+        maybe(0.1f, [&] { loose(table_game(set_, d_)); });
         break;
       case RoomKind::kitchen:
         wall(kitchen_row(set_, d_, d_.range(1.6f, 3.8f)));
@@ -65,6 +67,9 @@ class Furnisher {
         some(0, 3, [&] { wall(a_cupboard(0.7f, 2)); });
         maybe(0.5f, [&] { hang(wall_board(set_, d_), 0.8f, 1.1f); });
         maybe(0.25f, [&] { dining(); });
+        some(0, 2, [&] { loose(partition(set_, d_, plan_.height)); });
+        maybe(0.15f, [&] { column(); });
+        maybe(0.25f, [&] { loose(easel(set_, d_)); });
         break;
       case RoomKind::bathroom:
         wall(basin(set_, d_));
@@ -77,6 +82,7 @@ class Furnisher {
         some(0, 4, [&] { wall(a_cupboard(0.7f, 2)); });
         some(0, 2, [&] { wall(a_shelf()); });
         some(0, 3, [&] { wall(a_chair()); });
+        maybe(0.3f, [&] { wall(locker_row(set_, d_)); });
         maybe(0.4f, [&] { hang(coat_rack(set_, d_), 0.5f, 0.8f); });
         break;
       case RoomKind::hall:
@@ -85,12 +91,16 @@ class Furnisher {
         some(0, 2, [&] { loose(counter(set_, d_)); });
         some(0, 4, [&] { wall(a_cupboard(0.7f, 2)); });
         some(0, 3, [&] { column(); });
+        maybe(0.35f, [&] { wall(stairs(set_, d_, plan_.height)); });
+        maybe(0.3f, [&] { loose(partition(set_, d_, plan_.height)); });
+        maybe(0.2f, [&] { loose(table_game(set_, d_)); });
         some(0, 3, [&] { loose(a_plant()); });
         break;
       case RoomKind::storage:
         some(2, 7, [&] { wall(a_shelf()); });
         some(0, 3, [&] { wall(a_cupboard(0.7f, 2)); });
         some(1, 9, [&] { loose(box_pile(set_, d_)); });
+        maybe(0.4f, [&] { wall(locker_row(set_, d_)); });
         maybe(0.6f, [&] { loose(stepladder(set_, d_)); });
         break;
     }

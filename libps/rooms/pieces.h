@@ -32,6 +32,15 @@ Piece kitchen_row(Set& set, Dice& d, float width);
 Piece fridge(Set& set, Dice& d);
 Piece counter(Set& set, Dice& d);
 
+// pieces_large.cpp
+/// Posts and rails from floor to ceiling or less, glass between them that nobody sees.
+Piece partition(Set& set, Dice& d, float height);
+Piece stairs(Set& set, Dice& d, float height);
+Piece piano(Set& set, Dice& d);
+Piece table_game(Set& set, Dice& d);
+Piece easel(Set& set, Dice& d);
+Piece locker_row(Set& set, Dice& d);
+
 // pieces_models.cpp: real models, where the scene has a store of them
 /// @return true if there are models and the dice are for one
 bool wants_model(const Set& set, Dice& d);

@@ -42,14 +42,14 @@ void draw_plant(Dice& d, Builder b, float height, float radius, int pot, int soi
   const int kind = d.below(4);
   const Vec root{0, pot_high * 0.9f, 0};
   if (kind == 0) {
-    leaves(d, b, root, high * 1.1f, high * 0.18f, d.whole(12, 40), leaf, 1.1f);
+    leaves(d, b, root, high * 1.1f, high * 0.18f, d.whole(15, 60), leaf, 1.1f);
   } else if (kind == 1) {  // crowns on stems
     const int stems = d.whole(1, 4);
     for (int i = 0; i < stems; ++i) {
       const Vec top{d.range(-0.4f, 0.4f) * radius, pot_high + high * d.range(0.35f, 0.85f),
                     d.range(-0.4f, 0.4f) * radius};
       b.rod(root, top, 0.012f + 0.01f * height, stem);
-      leaves(d, b, top, radius * 1.1f, radius * 0.1f, d.whole(20, 50), leaf, 0.5f);
+      leaves(d, b, top, radius * 1.1f, radius * 0.1f, d.whole(30, 110), leaf, 0.5f);
     }
   } else if (kind == 2) {  // leaves all along
     const int stems = d.whole(2, 6);

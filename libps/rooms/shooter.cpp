@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "libps/rooms/shooter.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -10,9 +11,9 @@ namespace ps::rooms {
 namespace {
 
 constexpr float kPi = 3.14159265f;
-constexpr float kAmbientReach = 0.8f;   ///< metres within which things darken corners
-constexpr float kLeastMirror = 0.012f;  ///< reflected share that is worth a ray
-constexpr float kAbove = 2e-3f;         ///< metres over a surface where rays start
+constexpr float kAmbientReach = 0.8f;  ///< metres within which things darken corners
+constexpr float kLeastMirror = 0.02f;  ///< reflected share that is worth a ray
+constexpr float kAbove = 2e-3f;        ///< metres over a surface where rays start
 
 /// Where pixel (x, y) stands in its 4x4 block, well spread.
 constexpr int kOrder[16] = {0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
@@ -88,10 +89,12 @@ Shooter::Shooter(const Scene& scene, const Camera& camera)
     : scene_(scene), camera_(camera), eye_(eye_of(camera)), plane_(camera.width, camera.height) {}
 
 Shot Shooter::shoot() {
-  for (int y = 0; y < plane_.height; y += kSide) {
-    for (int x = 0; x < plane_.width; x += kSide) {
-      look(x, y);
-      light(x, y);
+  constexpr int kWide = 2 * kSide;
+  for (int y = 0; y < plane_.height; y += kWide) {
+    for (int x = 0; x < plane_.width; x += kWide) {
+      for (const int k : {0, 1, 2, 3}) look(x + k % 2 * kSide, y + k / 2 * kSide);
+      if (even(x, y, kWide) && light(x, y, 2)) continue;
+      for (const int k : {0, 1, 2, 3}) light(x + k % 2 * kSide, y + k / 2 * kSide, 1);
     }
   }
   reflect();
@@ -145,13 +148,29 @@ void Shooter::look(int x0, int y0) {
   }
 }
 
-void Shooter::light(int x0, int y0) {
+bool Shooter::even(int x0, int y0, int side) const {
+  if (x0 + side > plane_.width || y0 + side > plane_.height) return false;
+  const Pixel& first = plane_.pixels[plane_.index(x0, y0)];
+  const float depth = plane_.depth[plane_.index(x0, y0)];
+  for (int y = y0; y < y0 + side; ++y) {
+    for (int x = x0; x < x0 + side; ++x) {
+      const Pixel& p = plane_.pixels[plane_.index(x, y)];
+      if (!p.material || dot(p.normal, first.normal) < 0.99f ||
+          std::abs(dot(first.flat, p.position - first.position)) > 0.01f * depth) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool Shooter::light(int x0, int y0, int stride) {
   Lit lit[kRays];
   Rays rays;
   clear(rays);
   bool any = false;
   for (int k = 0; k < kRays; ++k) {
-    const int x = x0 + k % kSide, y = y0 + k / kSide;
+    const int x = x0 + k % kSide * stride, y = y0 + k / kSide * stride;
     if (x >= plane_.width || y >= plane_.height) continue;
     const Pixel& p = plane_.pixels[plane_.index(x, y)];
     if (!p.material) continue;
@@ -165,9 +184,10 @@ void Shooter::light(int x0, int y0) {
     const Vec up = kSamples.up[k];  // to find what darkens a corner
     set_ray(rays, k, lit[k].position, stand_on(p.flat, up.x, up.y, up.z), kAmbientReach);
   }
-  if (!any) return;
+  if (!any) return true;
   scene_.nearest(rays);
   add_direct(scene_, lit);
+  float quarters[4] = {};  // each has samples of all lamps, spread alike
   for (int k = 0; k < kRays; ++k) {
     if (!lit[k].space) continue;
     float open = 1;
@@ -175,11 +195,17 @@ void Shooter::light(int x0, int y0) {
       const float near = 1 - rays.reach[k] / kAmbientReach;
       open = 1 - 0.9f * near * std::sqrt(near);
     }
-    const std::size_t i = plane_.index(x0 + k % kSide, y0 + k / kSide);
-    const Pixel& p = plane_.pixels[i];
+    const int x = x0 + k % kSide * stride, y = y0 + k / kSide * stride;
+    const Pixel& p = plane_.pixels[plane_.index(x, y)];
     const Vec ambient = lit[k].space->probes.irradiance(p.position, p.normal);
-    plane_.light[i] = (lit[k].irradiance + ambient * open) * (1 / kPi);
+    const Vec light = (lit[k].irradiance + ambient * open) * (1 / kPi);
+    quarters[k % kSide / 2 + k / kSide / 2 * 2] += luminance(light);
+    for (int j = 0; j < stride * stride; ++j) {
+      plane_.light[plane_.index(x + j % stride, y + j / stride)] = light;
+    }
   }
+  const auto [least, most] = std::minmax_element(quarters, quarters + 4);
+  return *most <= 1.3f * *least;
 }
 
 void Shooter::reflect() {

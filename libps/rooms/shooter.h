@@ -18,8 +18,11 @@ class Shooter {
   Pixel see(const Rays& rays, int i) const;
   /// What 4x4 pixels see.
   void look(int x0, int y0);
-  /// Light on 4x4 pixels, each with its own sample of the lamps.
-  void light(int x0, int y0);
+  /// @return true if these pixels are of one flat surface
+  bool even(int x0, int y0, int side) const;
+  /// Light on 4x4 pixels, or squares of `stride` pixels, each with its own sample of the lamps.
+  /// @return false if it varies much
+  bool light(int x0, int y0, int stride);
   void reflect();
   void reflect(const std::uint32_t* pixels, int count);
   /// More rays where surfaces meet.

@@ -215,25 +215,28 @@ Kernels choose() {
           trace_kernel::reached_baseline};
 }
 
-const Kernels kKernels = choose();
+const Kernels& kernels() {
+  static const Kernels chosen = choose();
+  return chosen;
+}
 
 }  // namespace
 
 void nearest(const Tree& tree, int part, Rays& rays) {
   if (!tree.nodes.empty()) {
-    kKernels.nearest(tree.nodes.data(), tree.triangles.data(), part, &rays);
+    kernels().nearest(tree.nodes.data(), tree.triangles.data(), part, &rays);
   }
 }
 
 void blocked(const Tree& tree, Rays& rays) {
   if (!tree.nodes.empty()) {
-    kKernels.blocked(tree.nodes.data(), tree.triangles.data(), &rays);
+    kernels().blocked(tree.nodes.data(), tree.triangles.data(), &rays);
   }
 }
 
 int reached(const Tree& tree, const Rays& rays, std::uint32_t* out) {
   if (tree.nodes.empty()) return 0;
-  return kKernels.reached(tree.nodes.data(), tree.triangles.data(), &rays, out);
+  return kernels().reached(tree.nodes.data(), tree.triangles.data(), &rays, out);
 }
 
 }  // namespace ps::rooms

@@ -9,7 +9,17 @@ namespace {
 
 struct Trim {
   float skirting = 0, cornice = 0;
+  float dado = 0;  ///< height up to which walls are of another colour
+  int dado_material = 0;
 };
+
+/// A piece of wall in its two colours.
+void wall_panel(Builder& b, const Edge& e, const Trim& trim, float x0, float y0, float x1,
+                float y1) {
+  const float y = std::clamp(trim.dado, y0, y1);
+  if (y > y0) b.panel(x0, y0, x1, y, trim.dado_material);
+  if (y1 > y) b.panel(x0, y, x1, y1, e.material);
+}
 
 /// The wall around its openings, and what lies within its thickness.
 void build_panels(Set& set, const Plan& plan, const Edge& e, const Trim& trim) {
@@ -20,14 +30,14 @@ void build_panels(Set& set, const Plan& plan, const Edge& e, const Trim& trim) {
   float x = 0;
   const auto solid = [&](float to) {
     if (to <= x) return;
-    b.panel(x, 0, to, plan.height, e.material);
+    wall_panel(b, e, trim, x, 0, to, plan.height);
     if (trim.skirting > 0) b.box({x, 0, 0}, {to, trim.skirting, 0.014f}, set.style.trim, 0.004f);
   };
   for (const Opening& o : openings) {
     solid(o.from);
     x = o.to;
-    if (o.bottom > 0) b.panel(o.from, 0, o.to, o.bottom, e.material);
-    if (o.top < plan.height) b.panel(o.from, o.top, o.to, plan.height, e.material);
+    if (o.bottom > 0) wall_panel(b, e, trim, o.from, 0, o.to, o.bottom);
+    if (o.top < plan.height) wall_panel(b, e, trim, o.from, o.top, o.to, plan.height);
     const bool window = o.kind == Opening::window;
     const float deep = -set.style.wall * (window ? 1.f : 0.5f);
     const int side = window ? e.material : set.style.trim;
@@ -82,6 +92,9 @@ void build_door(Set& set, Dice& d, const Edge& e, const Opening& o) {
   build_frame(b, o, 0.07f, -0.01f, 0.02f, set.style.trim, false);
   if (o.kind == Opening::archway) return;
   if (o.kind == Opening::open_door && (o.behind || d.chance(0.15f))) return;
+  if (o.kind == Opening::closed_door) {  // nobody looks through its gaps
+    b.sheet({o.from, 0, -set.style.wall}, {o.to - o.from, 0, 0}, {0, o.top, 0}, set.style.dark);
+  }
   const float width = o.to - o.from;
   const bool two = width > 1.15f, hinge_left = d.chance(0.5f);
   const float leaf = two ? width / 2 : width;
@@ -289,6 +302,41 @@ void build_beams(Set& set, Dice& d, const Plan& plan) {
   }
 }
 
+/// Pipes, ducts or rails below the ceiling.
+void build_ducts(Set& set, Dice& d, const Plan& plan) {
+  const Rect& r = plan.rects[0];
+  const int m = d.chance(0.5f) ? set.style.metal : d.chance(0.5f) ? set.style.dark : plan.ceiling;
+  const int count = d.whole(1, 3), kind = d.below(3);
+  for (int i = 0; i < count; ++i) {
+    const bool along_x = d.chance(0.3f);
+    const float across =
+        along_x ? d.range(r.z0 + 0.2f, r.z1 - 0.2f) : d.range(r.x0 + 0.2f, r.x1 - 0.2f);
+    const float size = kind == 0 ? d.range(0.02f, 0.06f) : d.range(0.1f, 0.2f);
+    const float y = plan.height - size - d.range(0, 0.15f);
+    const Vec from = along_x ? Vec{r.x0, y, across} : Vec{across, y, r.z0};
+    const Vec to = along_x ? Vec{r.x1, y, across} : Vec{across, y, r.z1};
+    if (kind < 2) {
+      set.solid().rod(from, to, size, m, 12);
+    } else {
+      const Vec half = along_x ? Vec{0, size * 0.6f, size} : Vec{size, size * 0.6f, 0};
+      set.solid().box(from - half, to + half, m);
+    }
+  }
+}
+
+/// Part of the floor is of another kind.
+void build_floor_zone(Set& set, Dice& d, const Plan& plan) {
+  Rect r = plan.rects[0];
+  const float share = d.range(0.25f, 0.7f);
+  if (d.chance(0.5f)) {
+    r.x1 = r.x0 + share * r.width();
+  } else {
+    r.z0 = r.z1 - share * r.depth();
+  }
+  set.solid(Frame{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}, {0, 0.001f, 0}})
+      .panel(r.x0, -r.z1, r.x1, -r.z0, set.add(floor_material(d, plan.kind)));
+}
+
 }  // namespace
 
 void build_walls(Set& set, Plan& plan, bool first) {
@@ -319,8 +367,13 @@ void build_walls(Set& set, Plan& plan, bool first) {
     set.solid(Frame{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}, {0, plan.height, 0}})
         .panel(r.x0, r.z0, r.x1, r.z1, plan.ceiling);
   }
-  const Trim trim{d.chance(0.8f) ? d.range(0.05f, 0.15f) : 0,
-                  d.chance(0.15f) ? d.range(0.04f, 0.12f) : 0};
+  Trim trim;
+  if (d.chance(0.8f)) trim.skirting = d.range(0.05f, 0.15f);
+  if (d.chance(0.15f)) trim.cornice = d.range(0.04f, 0.12f);
+  if (d.chance(0.15f)) {
+    trim.dado = d.range(0.8f, 1.6f);
+    trim.dado_material = set.add(wall_material(d, d.chance(0.5f) ? any_color(d) : paint(d)));
+  }
   const int curtain = d.chance(0.4f) ? set.add(cloth(d)) : -1;
   const bool blinds = d.chance(0.3f), radiators = d.chance(0.6f);
   const int tall = d.below(static_cast<int>(plan.edges.size()));
@@ -339,6 +392,8 @@ void build_walls(Set& set, Plan& plan, bool first) {
     light_windows(set, e);
   }
   if (d.chance(0.12f) || (plan.kind == RoomKind::hall && d.chance(0.3f))) build_beams(set, d, plan);
+  if (d.chance(0.25f)) build_ducts(set, d, plan);
+  if (d.chance(0.15f)) build_floor_zone(set, d, plan);
   bool day = luminance(set.scene.sky.horizon) > 0.1f, window = false;
   for (const Edge& e : plan.edges) {
     for (const Opening& o : e.openings) window |= o.kind == Opening::window;
