@@ -85,7 +85,7 @@ bool worth_a_photo(const Scene& scene, const Camera& c, Dice& d) {
   std::nth_element(depth.begin(), depth.begin() + all / 2, depth.end());
   const float median = depth[all / 2];
   if (near > all / 8 || outside > all / 4 || median < 0.7f) return false;
-  if (median < 1.8f && !d.chance(median < 1.3f ? 0.25f : 0.6f)) return false;
+  if (median < 1.8f && !d.chance(median < 1.3f ? 0.2f : 0.5f)) return false;
   if (g.materials < 7 && !d.chance(g.materials < 4 ? 0.15f : 0.4f)) return false;
   return steps > all / 20 || d.chance(0.3f);
 }

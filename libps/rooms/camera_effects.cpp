@@ -44,8 +44,8 @@ void tone(Shot& s, Dice& d, const EffectOptions& o) {
   const float gains[3] = {gain_of(gain * red), gain_of(gain), gain_of(gain * blue)};
   const float corner = d.chance(0.6f) ? o.vignetting * d.unit() : 0;
   const float gamma = std::exp2(o.contrast * d.range(-0.4f, 1));
-  const float curve = o.contrast * d.range(-0.3f, 1);
-  const float saturation = 1 + o.saturation * d.range(-1, 1);
+  const float curve = o.contrast * d.range(-0.2f, 1.4f);
+  const float saturation = 1 + o.saturation * d.range(-0.6f, 1.2f);
   const Table light_left([&](float r2) { return gain_of(1 - corner * 0.5f * std::min(r2, 2.f)); });
   const Table contrast([&](float x) {
     const float q = std::pow(clamp01(x), gamma);
@@ -113,14 +113,33 @@ void focus(Shot& s, Dice& d, const EffectOptions& o) {
   }
 }
 
+/// Many cheap numbers: a congruential generator, its upper half (O'Neill, "PCG", 2014, after the
+/// same thought).
+class Grain {
+ public:
+  explicit Grain(Dice& d) : state_(static_cast<std::uint64_t>(d.bits()) << 32 | d.bits()) {}
+  /// About N(0, 1): a sum of four.
+  float normal() {
+    state_ = state_ * 6364136223846793005u + 1442695040888963407u;
+    const std::uint64_t x = state_ ^ state_ >> 29;
+    float sum = 0;
+    for (const int shift : {0, 16, 32, 48}) sum += static_cast<float>(x >> shift & 0xffff);
+    return (sum * 0x1p-16f - 2) * 1.7320508f;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
 void grain(Shot& s, Dice& d, const EffectOptions& o) {
   if (o.noise <= 0 || d.chance(0.2f)) return;
   const float sigma = o.noise * d.unit() * d.unit(), colored = d.unit();
+  Grain random(d);
   for (std::size_t i = 0; i < s.color.size(); i += 3) {
-    const float shared = d.normal();
+    const float shared = random.normal();
     for (int c = 0; c < 3; ++c) {
       const float light = s.color[i + c];
-      const float n = mix(shared, d.normal(), colored);
+      const float n = mix(shared, random.normal(), colored);
       s.color[i + c] = clamp01(light + sigma * n * (1.2f - 0.8f * light));
     }
   }

@@ -481,7 +481,7 @@ void furnish(Scene& scene, std::uint64_t seed, const RoomOptions& options) {
   scene.spaces.resize(1);
   scene.spaces[0].kind = pick_kind(set.dice);
   scene.sky = make_sky(set.dice);
-  scene.key = set.dice.range(0.08f, 0.16f);
+  scene.key = set.dice.range(0.065f, 0.14f);
   scene.evening = set.dice.range(0.15f, 0.45f);
   set.style = make_style(set);
   std::vector<Plan> plans = plan_building(set);

@@ -87,7 +87,7 @@ Material wood_material(Dice& d) {
   Material m;
   m.pattern = Pattern::wood;
   const float value = d.range(0.25f, 0.85f), hue = d.range(0.05f, 0.11f);
-  m.color = hsv(hue, d.range(0.25f, 0.65f), value);
+  m.color = hsv(hue, d.range(0.3f, 0.75f), value);
   m.second = m.color * d.range(0.4f, 0.75f);
   m.amount = d.range(0.4f, 1.3f);
   m.gloss = d.chance(0.5f) ? d.range(0.01f, 0.05f) : 0;

@@ -3,6 +3,10 @@
 // Loops over the rays of a packet are left to the compiler to turn into vectors.
 #include "libps/rooms/trace_kernel.h"
 
+#if defined(__AVX2__)
+#include <immintrin.h>
+#endif
+
 #define PS_JOIN2(a, b) a##b
 #define PS_JOIN(a, b) PS_JOIN2(a, b)
 
@@ -17,8 +21,23 @@ constexpr float kNear = 1e-5f, kOutside = -1e-5f;
 inline float smaller(float a, float b) { return a < b ? a : b; }
 inline float larger(float a, float b) { return a > b ? a : b; }
 
-inline bool meets_box(const TraceNode& n, const Rays& r) {
+/// @return whether any a is at most its b
+inline bool any_at_most(const float* a, const float* b) {
+#if defined(__AVX512F__)
+  return _mm512_cmp_ps_mask(_mm512_load_ps(a), _mm512_load_ps(b), _CMP_LE_OQ) != 0;
+#elif defined(__AVX2__)
+  const __m256 low = _mm256_cmp_ps(_mm256_load_ps(a), _mm256_load_ps(b), _CMP_LE_OQ);
+  const __m256 high = _mm256_cmp_ps(_mm256_load_ps(a + 8), _mm256_load_ps(b + 8), _CMP_LE_OQ);
+  return _mm256_movemask_ps(_mm256_or_ps(low, high)) != 0;
+#else
   int any = 0;
+  for (int i = 0; i < kRays; ++i) any |= a[i] <= b[i] ? 1 : 0;
+  return any != 0;
+#endif
+}
+
+inline bool meets_box(const TraceNode& n, const Rays& r) {
+  alignas(64) float in[kRays], out[kRays];
   for (int i = 0; i < kRays; ++i) {
     const float ax = (n.low[0] - r.origin[0][i]) * r.inverse[0][i];
     const float bx = (n.high[0] - r.origin[0][i]) * r.inverse[0][i];
@@ -26,12 +45,10 @@ inline bool meets_box(const TraceNode& n, const Rays& r) {
     const float by = (n.high[1] - r.origin[1][i]) * r.inverse[1][i];
     const float az = (n.low[2] - r.origin[2][i]) * r.inverse[2][i];
     const float bz = (n.high[2] - r.origin[2][i]) * r.inverse[2][i];
-    const float in = larger(larger(smaller(ax, bx), smaller(ay, by)), larger(smaller(az, bz), 0.f));
-    const float out =
-        smaller(smaller(larger(ax, bx), larger(ay, by)), smaller(larger(az, bz), r.reach[i]));
-    any |= in <= out ? 1 : 0;
+    in[i] = larger(larger(smaller(ax, bx), smaller(ay, by)), larger(smaller(az, bz), 0.f));
+    out[i] = smaller(smaller(larger(ax, bx), larger(ay, by)), smaller(larger(az, bz), r.reach[i]));
   }
-  return any != 0;
+  return any_at_most(in, out);
 }
 
 /// Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection" (1997).
