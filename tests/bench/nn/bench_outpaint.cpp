@@ -251,6 +251,7 @@ int main(int argc, char** argv) {
   app.add_option("--only", only, "headline, by_completions, by_cells, whole_view or screens");
   app.add_option("--memory", memory, "Only the peak memory of so many completions");
   CLI11_PARSE(app, argc, argv);
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // minutes pass: what is measured is told at once
   if (memory > 0) {
     ps::bench::memory_of(memory);
   } else {
