@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "libps/train/depth_net.h"
 #include "libps/train/stage.h"
@@ -69,19 +71,45 @@ class DepthStage : public Stage {
             {"skipped", taken ? 0 : 1}};
   }
 
+  void look_at(const Dataset& data) override {
+    const torch::NoGradGuard guard;
+    Tensor sum = torch::zeros({1, 1, data.side(), data.side()}), count = sum.clone();
+    for (std::size_t group = 0; group < data.groups().size(); ++group) {
+      for (const std::int64_t index : data.spread(group, 256, false)) {
+        const Tensor depth = data.batch({index}, false, torch::kCPU).depth;
+        sum += torch::log(depth.clamp_min(1e-3)) * known(depth);
+        count += known(depth);
+      }
+    }
+    mean_depth_ = torch::exp(sum / count.clamp_min(1));
+    ramp_ = torch::exp(sum.sum(3, true) / count.sum(3, true).clamp_min(1)).expand_as(sum);
+  }
+
   Values test(const Batch& batch) override {
     const torch::NoGradGuard guard;
-    const Tensor mask = known(batch.depth);
     const Tensor depth = depth_of(net_.forward(batch.color, false));
-    const Tensor scale = masked_median(batch.depth, mask) / masked_median(depth, mask);
-    const Tensor truth = batch.depth.clamp_min(1e-3), scaled = depth * scale;
+    Values values = scores(depth, batch.depth, "");
+    values.merge(scores(torch::ones_like(depth), batch.depth, "_constant"));
+    for (const auto& [map, name] :
+         {std::make_pair(ramp_, "_ramp"), std::make_pair(mean_depth_, "_mean")}) {
+      if (!map.defined()) continue;
+      values.merge(scores(map.to(depth.device()).expand_as(depth), batch.depth, name));
+    }
+    return values;
+  }
+
+  /// @param name  of what guessed it, behind each score's
+  static Values scores(const Tensor& depth, const Tensor& known_depth, const std::string& name) {
+    const Tensor mask = known(known_depth);
+    const Tensor scale = masked_median(known_depth, mask) / masked_median(depth, mask);
+    const Tensor truth = known_depth.clamp_min(1e-3), scaled = depth * scale;
     const Tensor ratio = torch::max(scaled / truth, truth / scaled);
     const auto mean = [&](const Tensor& values) {
       return masked_mean(values, mask).mean().item<double>();
     };
-    return {{"abs_rel", mean((scaled - truth).abs() / truth)},
-            {"delta1", mean((ratio < 1.25).to(torch::kFloat32))},
-            {"abs_rel_raw", mean((depth - truth).abs() / truth)}};
+    return {{"abs_rel" + name, mean((scaled - truth).abs() / truth)},
+            {"delta1" + name, mean((ratio < 1.25).to(torch::kFloat32))},
+            {"abs_rel_raw" + name, mean((depth - truth).abs() / truth)}};
   }
 
   std::vector<std::vector<Tensor>> pictures(const Batch& batch) override {
@@ -110,6 +138,7 @@ class DepthStage : public Stage {
  private:
   DepthNet net_;
   Adam adam_;
+  Tensor mean_depth_, ramp_;  ///< of the training data: at each pixel, in each row
 };
 
 }  // namespace

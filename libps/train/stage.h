@@ -31,6 +31,9 @@ class Stage {
   /// Whether examples are second views of pairs, with their splats and orders.
   virtual bool pairs() const { return false; }
 
+  /// @brief Told once what it is trained on, for what scores are compared with.
+  virtual void look_at(const Dataset&) {}
+
   /// @brief One step along the gradients of a batch.
   /// @return the losses, summed up by name
   virtual Values step(const Batch& batch, torch::Generator generator, double learning_rate) = 0;

@@ -105,6 +105,7 @@ class Run {
     if (failed) throw Error(options_.out.string(), failed.message(), "a folder that can be made");
     if (!options_.init.empty()) load_weights(*stage_, options_.init);
     step_ = load_checkpoint(*stage_, options_);
+    if (test_) stage_->look_at(train_);
   }
 
   TrainReport go() {
@@ -121,6 +122,7 @@ class Run {
       if (end) break;
       if (step_ % options_.save_every == 0) save_checkpoint(*stage_, options_, step_);
     }
+    if (first == options_.steps) evaluate();  // what was finished is scored again
     save_checkpoint(*stage_, options_, step_);
     report_.weights = save_weights(*stage_, options_, step_);
     report_.steps = step_;
