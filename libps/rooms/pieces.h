@@ -28,6 +28,13 @@ Piece round_table(Set& set, Dice& d);
 Piece desk(Set& set, Dice& d);
 Piece shelf(Set& set, Dice& d);
 Piece cupboard(Set& set, Dice& d, float low, float high);  ///< heights to choose from
+
+// pieces_kitchen.cpp
+/// Notes a free place for clutter, in the frame of a piece.
+void add_top(Set& set, const Builder& b, Vec middle, float width, float depth, float room);
+/// Doors and drawers over (x0, y0)-(x1, y1) of the plane z = 0.
+void fronts(Builder b, Dice& d, float x0, float y0, float x1, float y1, int style, int front,
+            int grip);
 Piece kitchen_row(Set& set, Dice& d, float width);
 Piece fridge(Set& set, Dice& d);
 Piece counter(Set& set, Dice& d);
@@ -51,8 +58,15 @@ Piece hanging_model(Set& set, Dice& d, bool ceiling, float& elevation);
 /// @return false if none of a few that were tried fits
 bool model_clutter(Set& set, Dice& d, const Frame& f, float width, float depth, float height);
 
-// pieces_small.cpp
+// pieces_plants.cpp
 Piece plant(Set& set, Dice& d);
+/// Materials: those of a plant's pot, soil, leaves and stems.
+void draw_plant(Dice& d, Builder b, float height, float radius, int pot, int soil, int leaf,
+                int stem);
+/// A material for leaves.
+int green(Set& set, Dice& d);
+
+// pieces_small.cpp
 Piece floor_lamp(Set& set, Dice& d);
 Piece bin(Set& set, Dice& d);
 Piece box_pile(Set& set, Dice& d);
@@ -61,6 +75,8 @@ Piece bathtub(Set& set, Dice& d);
 Piece basin(Set& set, Dice& d);
 Piece stepladder(Set& set, Dice& d);
 Piece bag(Set& set, Dice& d);
+
+// clutter.cpp
 /// One thing that stands on a table or shelf, at most this large.
 void clutter(Set& set, Dice& d, Builder b, float width, float depth, float height);
 /// Fills a top with things; `fill` of 1 is crowded.

@@ -28,7 +28,8 @@ struct Scene;  // Internal: triangles, materials, lights.
 /// windows to an outside without depth. World axes: x right, y up, z towards the viewer; metres;
 /// the floor is y = 0.
 ///
-/// A function of (seed, options) alone. Immutable, may be used from many threads at once; copies
+/// A function of (seed, options) alone, as one compiler builds it (the order in which arguments are
+/// made is its choice). Immutable, may be used from many threads at once; copies
 /// share and are cheap.
 class Room {
  public:

@@ -67,6 +67,8 @@ struct Frame {
   }
 };
 
+/// Not turned.
+inline Frame at(float x, float y, float z) { return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {x, y, z}}; }
 /// Turned about the upright axis: z goes towards x.
 inline Frame turned(float angle, Vec origin = {}) {
   const float c = std::cos(angle), s = std::sin(angle);
