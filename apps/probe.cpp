@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "libps/core/error.h"
 #include "libps/nn/weights.h"
@@ -59,24 +60,44 @@ const FileTensor& ProbeInput::take(const std::string& name,
         text_of(shape));
   }
   const std::vector<float> values = tensor.as_floats();
-  const auto finite = [](float value) { return std::isfinite(value); };
-  const auto bad = std::find_if_not(values.begin(), values.end(), finite);
-  if (bad != values.end()) {
-    throw Error(files_.in,
-                "tensor '" + files_.prefix + name + "' holds " + std::to_string(*bad) +
-                    " at value " + std::to_string(bad - values.begin()),
-                "finite numbers");
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) refuse(name, i, values[i], "finite numbers");
   }
   return tensor;
 }
 
-std::vector<std::int32_t> codes_of(const FileTensor& tensor) {
-  constexpr float kTooMuch = 1e6f;
+void ProbeInput::refuse(const std::string& name, std::size_t at, float value,
+                        const std::string& expected) const {
+  std::ostringstream text;
+  text << "tensor '" << files_.prefix << name << "' holds " << value << " at value " << at;
+  throw Error(files_.in, text.str(), expected);
+}
+
+std::vector<std::int32_t> ProbeInput::codes(const std::string& name,
+                                            const std::vector<std::size_t>& shape) const {
+  constexpr float kMost = 1 << 24;  // beyond, floats are not all whole numbers
+  const std::vector<float> values = take(name, shape).as_floats();
   std::vector<std::int32_t> codes;
-  for (const float value : tensor.as_floats()) {
-    codes.push_back(value >= 0 ? static_cast<std::int32_t>(std::min(value, kTooMuch)) : -1);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::abs(values[i]) > kMost || values[i] != std::floor(values[i])) {
+      refuse(name, i, values[i], "codes, which are whole numbers");
+    }
+    codes.push_back(static_cast<std::int32_t>(values[i]));
   }
   return codes;
+}
+
+void check_finite(const TensorMap& made, const std::string& weights) {
+  for (const auto& [name, tensor] : made) {
+    const std::vector<float> values = tensor.as_floats();
+    const auto finite = [](float value) { return std::isfinite(value); };
+    const auto bad = std::find_if_not(values.begin(), values.end(), finite);
+    if (bad == values.end()) continue;
+    throw Error(weights,
+                "these weights make " + std::to_string(*bad) + " at value " +
+                    std::to_string(bad - values.begin()) + " of '" + name + "'",
+                "weights that make finite numbers of this input");
+  }
 }
 
 std::vector<std::uint8_t> mask_of(const FileTensor& tensor) {

@@ -38,16 +38,23 @@ class ProbeInput {
   /// when a value is not finite.
   const FileTensor& take(const std::string& name, const std::vector<std::size_t>& shape) const;
 
+  /// @brief Codes of any type of number. Throws as take() does, and when one is no whole number of
+  /// at most 2^24; below 0 is no code.
+  std::vector<std::int32_t> codes(const std::string& name,
+                                  const std::vector<std::size_t>& shape) const;
+
  private:
+  [[noreturn]] void refuse(const std::string& name, std::size_t at, float value,
+                           const std::string& expected) const;
+
   const ProbeFiles& files_;
   TensorMap tensors_;
 };
 
-/// @brief Codes of any type of number; what is no code stays none: too much for any network, or
-/// below 0.
-std::vector<std::int32_t> codes_of(const FileTensor& tensor);
 /// @return 1 where the tensor is not 0
 std::vector<std::uint8_t> mask_of(const FileTensor& tensor);
+/// @brief Throws ps::Error, naming the weights, when a network made a value that is not finite.
+void check_finite(const TensorMap& made, const std::string& weights);
 /// @brief The order for the tensor `bg256`, [1,H,W]. Throws ps::Error when its sides are no
 /// multiples of 8.
 outpaint::Order order_of(const ProbeInput& in);

@@ -99,7 +99,7 @@ void run_vq_encode(Job& job) {
 void run_vq_decode(Job& job) {
   const models::Autoencoder net(job.weights);
   const FileTensor& grid = job.in.take("codes", {0, 0, 0});
-  const auto codes = codes_of(grid);
+  const auto codes = job.in.codes("codes", {0, 0, 0});
   constexpr int kCell = models::Autoencoder::kCell;
   const nn::Tensor image({side(grid, 0), side(grid, 1) * kCell, side(grid, 2) * kCell, 3});
   job.time([&] { net.decode(codes.data(), image, job.workspace); });
@@ -113,11 +113,19 @@ void run_pixel_cnn(Job& job) {
   const auto mask = [&](const char* name) { return mask_of(job.in.take(name, {9, cells})); };
   models::LocalMasks masks;
   if (job.in.has("bg256")) {
-    masks = order_of(job.in).masks;
+    const outpaint::Order order = order_of(job.in);
+    if (order.height != side(grid, 1) || order.width != side(grid, 2)) {
+      throw Error(job.arguments.files.in,
+                  "bg256 has " + std::to_string(order.height) + "x" + std::to_string(order.width) +
+                      " cells, codes " + std::to_string(side(grid, 1)) + "x" +
+                      std::to_string(side(grid, 2)),
+                  "8 pixels of bg256 along each side of a code");
+    }
+    masks = order.masks;
   } else {
     masks = {mask("mask_init"), mask("mask_undilated"), mask("mask_dilated")};
   }
-  auto codes = codes_of(grid);
+  auto codes = job.in.codes("codes", {0, 0, 0});
   if (job.in.has("missing")) {
     const auto missing = mask_of(job.in.take("missing", {grid.shape[1], grid.shape[2]}));
     for (std::size_t i = 0; i < codes.size(); ++i) {
@@ -227,6 +235,7 @@ void run(const Module& module, const NetworkArguments& a, const Context& context
   Job job{a, ProbeInput(a.files), read_weights(a.weights)};
   module.run(job);
   throw_if_interrupted();
+  check_finite(job.out, a.weights);
   write_safetensors(a.files.out, job.out);
   print_report(context, {{"module", module.name}, {"forward_seconds", job.seconds}});
   context.say(a.files.out + ": " + module.name);

@@ -67,7 +67,7 @@ void run_sample(const SampleArguments& a, const Context& context) {
   const auto height = static_cast<std::size_t>(order.height),
              width = static_cast<std::size_t>(order.width);
   const models::PixelCnn net(read_weights(a.weights));
-  outpaint::Sampler sampler(net, order, codes_of(in.take("codes", {1, height, width})));
+  outpaint::Sampler sampler(net, order, in.codes("codes", {1, height, width}));
   outpaint::SampleOptions options;
   options.temperature = a.greedy ? 0 : a.temperature;
   options.seed = context.seed;
@@ -116,13 +116,14 @@ void add_probe_outpaint(CLI::App& probe, const Context& context) {
   sample->add_option("--weights", a->weights, "Weights: safetensors or a torch checkpoint")
       ->required()
       ->type_name("FILE");
-  sample->add_flag("--greedy", a->greedy, "Take the likeliest code (temperature 0)");
+  auto* greedy = sample->add_flag("--greedy", a->greedy, "Take the likeliest code (temperature 0)");
   sample->add_option("--temperature", a->temperature, "0 = greedy")
       ->type_name("T")
+      ->excludes(greedy)
       ->check(in_range(0, 2));
   sample->add_option("--completion", a->completion, "Which completion of the seed's")
       ->type_name("N")
-      ->check(in_range(0, 1e6));
+      ->check(whole_in(0, 1000000));
   sample->callback([a, &context] { run_sample(*a, context); });
 }
 
