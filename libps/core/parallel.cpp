@@ -124,10 +124,6 @@ void set_threads(int count) {
 int threads() { return thread_count > 0 ? thread_count.load() : core_count(); }
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
-  if (count == 1) {  // no loop: loops within may have the threads
-    body(0);
-    return;
-  }
   Loop loop;
   loop.count = count;
   loop.body = &body;

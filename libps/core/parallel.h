@@ -16,9 +16,8 @@ int threads();
 /// @brief Calls `body(i)` once for every i in [0, count), on all threads.
 ///
 /// Iterations may run in any order and must not depend on each other; whatever they write must not
-/// depend on the thread. A loop started inside a loop runs on the calling thread alone, unless that
-/// has but one iteration. Returns when all are done. If iterations throw, the exception of the
-/// smallest i is thrown again here.
+/// depend on the thread. A loop started inside a loop runs on the calling thread alone. Returns
+/// when all are done. If iterations throw, the exception of the smallest i is thrown again here.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
 /// @brief Splits [0, count) into `chunk`-sized ranges and calls `body(begin, end)` for each.
