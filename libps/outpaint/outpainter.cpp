@@ -28,7 +28,13 @@ class Clock {
 };
 
 void check(const OutpaintOptions& options) {
-  if (options.samples < 1) throw Error("samples", std::to_string(options.samples), "at least 1");
+  constexpr int kMostSamples = 1000;
+  if (options.samples < 1 || options.samples > kMostSamples) {
+    throw Error("samples", std::to_string(options.samples), "1 to " + std::to_string(kMostSamples));
+  }
+  if (!(options.temperature >= 0 && options.temperature <= 2)) {
+    throw Error("temperature", std::to_string(options.temperature), "0 to 2");
+  }
   if (options.refine_best < 0) {
     throw Error("completions to refine", std::to_string(options.refine_best), "0 (all) or more");
   }

@@ -16,13 +16,13 @@
 namespace ps::outpaint {
 
 struct OutpaintOptions {
-  int samples = 50;  ///< completions drawn; at most, when `until_settled`
+  int samples = 50;  ///< completions drawn, 1 to 1000; at most, when `until_settled`
   /// Draw in rounds of kRound until the best of all came in the first half of what is drawn and the
   /// last round did not change it. Were totals independent, one more round would then change it
   /// with a chance of kRound / (drawn + kRound).
   bool until_settled = false;
   static constexpr int kRound = 8;
-  double temperature = 0.7;
+  double temperature = 0.7;  ///< 0 (greedy) to 2
   std::uint64_t seed = 0;
   std::uint32_t view = 0;
   bool likelihood = false;  ///< count the PixelCNN's own mean log-likelihood as a signal

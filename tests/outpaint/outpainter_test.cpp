@@ -38,7 +38,29 @@ TEST_F(OutpainterOfRandomWeights, nothing_missing_costs_nothing) {
   const Outpainted result = outpainter({recorder()}).run(projection_, background_, {});
   EXPECT_EQ(worst_difference(result.image, projection_), 0);
   EXPECT_EQ(result.report.drawn, 0);
+  EXPECT_EQ(result.best, -1);
   EXPECT_TRUE(seen_.empty());
+}
+
+TEST_F(OutpainterOfRandomWeights, options_out_of_range_throw_even_where_nothing_is_missing) {
+  background_ = 0;
+  const auto message = [&](const OutpaintOptions& options) -> std::string {
+    try {
+      outpainter({recorder()}).run(projection_, background_, options);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  OutpaintOptions options;
+  options.temperature = std::nan("");
+  EXPECT_NE(message(options).find("temperature"), std::string::npos);
+  options = {};
+  options.samples = 1001;
+  EXPECT_NE(message(options).find("1 to 1000"), std::string::npos);
+  options = {};
+  options.refine_best = -1;
+  EXPECT_NE(message(options).find("completions to refine"), std::string::npos);
 }
 
 TEST_F(OutpainterOfRandomWeights, a_missing_rim_without_a_whole_cell_takes_one_completion) {

@@ -189,7 +189,9 @@ TEST(Sampler, the_least_temperatures_draw_what_greedy_takes) {
   const Completion greedy = sampler.sample(0, 1, options).at(0);
   for (const double temperature : {1e-5, 1e-30, 1e-44, 1e-300}) {
     options.temperature = temperature;
-    for (const Completion& drawn : sampler.sample(0, 3, options)) expect_same(drawn, greedy);
+    const auto completions = sampler.sample(0, 3, options);
+    ASSERT_EQ(completions.size(), 3u);
+    for (const Completion& drawn : completions) expect_same(drawn, greedy);
   }
   options.temperature = 2;
   EXPECT_NE(sampler.sample(0, 1, options).at(0).codes, greedy.codes);

@@ -38,7 +38,9 @@ TEST(Sampler, greedy_equals_the_published_code_token_for_token) {
   SampleOptions options;
   options.temperature = 0;
   const auto tokens = ints_of(all.at("tokens"));
-  for (const Completion& completion : sampler.sample(0, 3, options)) {
+  const auto completions = sampler.sample(0, 3, options);
+  ASSERT_EQ(completions.size(), 3u);
+  for (const Completion& completion : completions) {
     EXPECT_EQ(completion.codes, ints_of(all.at("codes_out")));
     for (std::size_t i = 0; i < tokens.size(); i += 3) {
       EXPECT_EQ(completion.codes[static_cast<std::size_t>(tokens[i] * 32 + tokens[i + 1])],
