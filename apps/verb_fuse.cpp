@@ -14,6 +14,7 @@
 #include "apps/program.h"
 #include "apps/progress.h"
 #include "apps/report.h"
+#include "apps/scene_report.h"
 #include "io/cloud_file.h"
 #include "io/intrinsics_file.h"
 #include "io/trajectory.h"
@@ -156,11 +157,7 @@ Json report_of(const FuseReport& fused, const FrameList& frames, const Cloud& cl
   report["views"] = fused.views;
   report["without_depth"] = fused.empty;
   report["held_out"] = frames.held_out.size();
-  report["pixels"] = {{"lifted", fused.pixels.lifted},
-                      {"explained", fused.pixels.explained},
-                      {"duplicates", fused.pixels.duplicates},
-                      {"added", fused.pixels.added},
-                      {"replaced", fused.pixels.replaced}};
+  report["pixels"] = to_json(fused.pixels);
   report["contradicted"] = fused.contradicted;
   report["seconds"] = {{"load", fused.load_seconds}, {"add", fused.add_seconds}};
   return report;

@@ -35,6 +35,15 @@ struct AddReport {
   std::size_t duplicates = 0;  ///< pixels dropped because an old point is within the spacing
   std::size_t added = 0;       ///< points added
   std::size_t replaced = 0;    ///< points removed because this view sees their surface better
+
+  AddReport& operator+=(const AddReport& other) {
+    lifted += other.lifted;
+    explained += other.explained;
+    duplicates += other.duplicates;
+    added += other.added;
+    replaced += other.replaced;
+    return *this;
+  }
 };
 
 /// @brief One world: accumulates views into one cloud without duplicates (SPEC.md 1;

@@ -239,6 +239,7 @@ Outpainted Outpainter::outpaint(const nn::TensorView& projection, const cv::Mat1
                         {options.seed, options.view}, options.region);
   OutpaintReport& report = result.report;
   report.changed = pictures.changed();
+  report.cells = order.size();
   report.missing_cells = static_cast<std::size_t>(
       std::count(order.missing.begin(), order.missing.end(), std::uint8_t{1}));
   const int samples = report.missing_cells > 0 ? options.samples : 1;  // else all are the same

@@ -44,7 +44,7 @@ struct OutpaintOptions {
 
 /// What it took; seconds are of this run.
 struct OutpaintReport {
-  std::size_t missing_cells = 0, levels = 0;
+  std::size_t cells = 0, missing_cells = 0, levels = 0;
   int drawn = 0, refined = 0;
   cv::Rect changed;  ///< the pixels in which completions can differ
   double encode_seconds = 0, sample_seconds = 0, decode_seconds = 0, refine_seconds = 0,

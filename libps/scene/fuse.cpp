@@ -15,14 +15,6 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void accumulate(AddReport* sum, const AddReport& one) {
-  sum->lifted += one.lifted;
-  sum->explained += one.explained;
-  sum->duplicates += one.duplicates;
-  sum->added += one.added;
-  sum->replaced += one.replaced;
-}
-
 }  // namespace
 
 Cloud fuse(const ViewSource& source, const FuseOptions& options, FuseReport* report,
@@ -54,7 +46,7 @@ Cloud fuse(const ViewSource& source, const FuseOptions& options, FuseReport* rep
       ++sum.empty;
     } else {
       const auto before_add = std::chrono::steady_clock::now();
-      accumulate(&sum.pixels, scene.add(view, static_cast<std::uint16_t>(i)));
+      sum.pixels += scene.add(view, static_cast<std::uint16_t>(i));
       sum.add_seconds += seconds_since(before_add);
       ++sum.views;
     }

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/scene_arguments.h"
+
+#include <cmath>
+#include <cstdlib>
+
+#include "apps/program.h"
+#include "apps/scene_models.h"
+
+namespace ps::apps {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+void add_view_options(CLI::App& verb, SceneArguments& a) {
+  verb.add_option("--directions", a.directions,
+                  "Which of left, right, up, down, up-left, up-right, down-left, down-right")
+      ->type_name("NAME,...")
+      ->delimiter(',')
+      ->check(CLI::IsMember(direction_names()));
+  verb.add_option("--range-horizontal", a.range_horizontal,
+                  "How far the camera turns to the left and right: radians, or degrees as 34deg")
+      ->type_name("ANGLE");
+  verb.add_option("--range-vertical", a.range_vertical, "The same up and down")->type_name("ANGLE");
+  verb.add_option("--orbit", a.orbit, "Turn about the point so many metres ahead; 0 = on the spot")
+      ->type_name("M")
+      ->check(in_range(0, 1e6));
+  verb.add_option("--support-views", a.support_views,
+                  "Trajectory file of further views to outpaint, in the scene's world")
+      ->type_name("FILE");
+  verb.add_option("--strategy", a.strategy,
+                  "support: outpaint at the extremes, splat in between; sequential: outpaint every "
+                  "view, nearest first; independent: every view for itself")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"support", "sequential", "independent"}));
+  verb.add_option("--views-per-direction", a.views_per_direction,
+                  "Views on the way to each extreme, itself included")
+      ->type_name("N")
+      ->check(whole_in(1, 1000));
+}
+
+void add_outpaint_options(CLI::App& verb, SceneArguments& a) {
+  verb.add_flag("--no-outpaint", a.no_outpaint, "Invent nothing: only what the photo shows");
+  verb.add_option("--samples", a.samples,
+                  "Completions drawn for each outpainted view, the best is kept: 1 to 1000, or "
+                  "auto = until more would not help, 50 at most")
+      ->type_name("N|auto");
+  verb.add_option("--temperature", a.temperature, "Of the sampling; 0 = always the likeliest code")
+      ->type_name("T")
+      ->check(in_range(0, 2));
+  verb.add_option("--refine-best", a.refine_best,
+                  "Refine only so many completions, the best by a look at the unrefined; 0 = all")
+      ->type_name("N")
+      ->check(whole_in(0, 1000));
+  verb.add_option("--select", a.select, "What chooses the best completion")
+      ->type_name("NAME")
+      ->check(CLI::IsMember(selection_names()));
+  verb.add_option(
+          "--weights", a.weights,
+          "Weights: one file of all networks, or a folder of depth, vqvae, pixelcnn, refine "
+          "and classifier.safetensors (default: those that come with the program)")
+      ->type_name("FILE|DIR");
+}
+
+void add_picture_options(CLI::App& verb, SceneArguments& a) {
+  verb.add_option("--view-size", a.view_size,
+                  "Long side of the pictures, at most, pixels; of a photo of more than twice that, "
+                  "what half a "
+                  "pixel of them cannot show is left out")
+      ->type_name("PX")
+      ->check(whole_in(16, 8192));
+  verb.add_option("--paths", a.paths,
+                  "Videos to make, NAME.mp4: circle, sway, a direction, or a trajectory file")
+      ->type_name("PATH,...")
+      ->delimiter(',');
+  verb.add_option("--path-frames", a.path_frames, "Frames of each built-in path")
+      ->type_name("N")
+      ->check(whole_in(1, 100000));
+  verb.add_option("--fps", a.frames_per_second, "Frames per second of the videos")
+      ->type_name("N")
+      ->check(in_range(1, 1000));
+}
+
+}  // namespace
+
+double parse_angle(const std::string& text, const std::string& option) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  const std::string unit = end;
+  const double radians = unit == "deg" ? value * kPi / 180 : value;
+  const bool known = unit.empty() || unit == "rad" || unit == "deg";
+  if (end == text.c_str() || !known || !(radians >= 0 && radians <= kPi + 1e-9)) {
+    throw CLI::ValidationError(option, "'" + text +
+                                           "' is no angle from 0 to 180 degrees; expected radians, "
+                                           "as 0.6, or degrees, as 34deg");
+  }
+  return std::min(radians, kPi);
+}
+
+void SceneArguments::add_to(CLI::App& verb) {
+  input.add_to(verb);
+  verb.add_option("-o,--output", output, "Folder to write")->required()->type_name("OUT");
+  add_view_options(verb, *this);
+  add_outpaint_options(verb, *this);
+  add_picture_options(verb, *this);
+  verb.add_flag("--resume", resume,
+                "Go on with what an interrupted run of the same command has done");
+}
+
+PlanOptions SceneArguments::plan() const {
+  PlanOptions options;
+  options.strategy = strategy_of(strategy);
+  options.directions = directions;
+  options.views_per_direction = views_per_direction;
+  options.range.range_horizontal = parse_angle(range_horizontal, "--range-horizontal");
+  options.range.range_vertical = parse_angle(range_vertical, "--range-vertical");
+  options.range.orbit_radius = orbit;
+  return options;
+}
+
+SceneOptions SceneArguments::scene(const Context& context) const {
+  SceneOptions options;
+  options.cloud.lift = input.lift;
+  outpaint::OutpaintOptions& o = options.outpaint;
+  if (samples == "auto") {
+    o.until_settled = true;
+  } else {
+    char* end = nullptr;
+    const long count = std::strtol(samples.c_str(), &end, 10);
+    if (samples.empty() || *end != '\0' || count < 1 || count > 1000) {
+      throw CLI::ValidationError("--samples", "'" + samples + "'; expected 1 to 1000, or auto");
+    }
+    o.samples = static_cast<int>(count);
+  }
+  if (o.until_settled && refine_best > 0) {
+    throw CLI::ValidationError("--refine-best", "does not go with --samples auto");
+  }
+  o.temperature = temperature;
+  o.refine_best = refine_best;
+  o.seed = context.seed;
+  o.likelihood = select == "likelihood";
+  return options;
+}
+
+}  // namespace ps::apps

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/scene_input.h"
+#include "libps/scene/scene_builder.h"
+#include "libps/scene/scene_plan.h"
+
+namespace ps::apps {
+
+/// The options of `scene`.
+struct SceneArguments {
+  SceneInputArguments input;
+  std::string output;
+  std::string weights;
+  bool no_outpaint = false;
+  bool resume = false;
+
+  std::vector<std::string> directions = direction_names();
+  std::string range_horizontal = "0.6", range_vertical = "0.3";
+  double orbit = 0;
+  std::string support_views;  ///< a trajectory of further views to outpaint
+  std::string strategy = "support";
+  int views_per_direction = 2;
+
+  std::string samples = "50";
+  double temperature = 0.7;
+  int refine_best = 0;
+  std::string select = "both";
+
+  int view_size = 1024;
+  std::vector<std::string> paths;
+  int path_frames = 64;
+  double frames_per_second = 30;
+
+  void add_to(CLI::App& verb);
+
+  /// Throw CLI::ValidationError (wrong usage) where a text is none of what is allowed.
+  PlanOptions plan() const;
+  SceneOptions scene(const Context& context) const;
+};
+
+/// @return radians of `0.6`, `0.6rad` or `34deg`; throws CLI::ValidationError naming the option
+double parse_angle(const std::string& text, const std::string& option);
+
+}  // namespace ps::apps

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/scene_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <system_error>
+
+#include "apps/frame_list.h"
+#include "apps/interrupt.h"
+#include "apps/lift_arguments.h"
+#include "apps/program.h"
+#include "apps/progress.h"
+#include "io/depth_file.h"
+#include "io/photo.h"
+#include "io/rgbd_folder.h"
+#include "libps/core/error.h"
+#include "libps/geometry/depth_alignment.h"
+#include "libps/scene/camera_path.h"
+
+namespace fs = std::filesystem;
+
+namespace ps::apps {
+namespace {
+
+/// The photo's camera in the scene's world: y up and z towards the viewer, so that other programs
+/// show the cloud the right way up.
+const Pose kPhotoPose = [] {
+  Pose pose = Pose::Identity();
+  pose.linear().diagonal() << 1, -1, -1;
+  return pose;
+}();
+
+std::string text_of(cv::Size size) {
+  return std::to_string(size.width) + "x" + std::to_string(size.height);
+}
+
+Depth read_depth_for(const std::string& file, double depth_scale, cv::Size photo,
+                     const Context& context) {
+  Depth depth = read_depth(file, depth_scale);
+  if (depth.size() == photo) return depth;
+  const std::string sizes = "is " + text_of(depth.size()) + ", the photo " + text_of(photo);
+  if (!same_aspect(depth.size(), photo)) throw Error(file, sizes, "the same aspect");
+  context.warn(file + ": " + sizes + "; scaled to the photo's size");
+  Depth scaled;
+  cv::resize(depth, scaled, photo, 0, 0, cv::INTER_NEAREST_EXACT);
+  return scaled;
+}
+
+/// Fills the holes of a measured depth with the network's, which is made to continue it.
+/// @return what the report says of it
+Json fill_holes(View& view, const DepthModel& model) {
+  const Mask known = view.depth > 0, unknown = ~known;
+  const int holes = cv::countNonZero(unknown);
+  if (holes == 0) return {{"pixels", 0}};
+  const Depth guess = photo_depth(model.net, view.color, view.intrinsics, model.scale);
+  const AlignedDepth aligned = align_depth(guess, view.depth, known & 1, unknown & 1);
+  aligned.depth.copyTo(view.depth, unknown);
+  Json report = {{"pixels", holes}, {"agreed", aligned.agreed}, {"residual", aligned.residual}};
+  if (!aligned.agreed) report["why"] = aligned.why;
+  return report;
+}
+
+/// Shrunk until no side is above `longest` pixels.
+View shrunk(const View& view, int longest, Json& report) {
+  const cv::Size size = view.color.size();
+  const double scale = static_cast<double>(longest) / std::max(size.width, size.height);
+  if (scale >= 1) return view;
+  const auto side = [&](int n) { return std::max(1, static_cast<int>(std::lround(n * scale))); };
+  View small = view;
+  const cv::Size to(side(size.width), side(size.height));
+  cv::resize(view.color, small.color, to, 0, 0, cv::INTER_AREA);
+  cv::resize(view.depth, small.depth, to, 0, 0, cv::INTER_NEAREST_EXACT);
+  small.intrinsics = resized(view.intrinsics, to.width, to.height);
+  report["shrunk_to"] = {to.width, to.height};
+  return small;
+}
+
+/// A photo with its depth; its pose is the scene's beginning.
+View read_one(const SceneInputArguments& a, const std::string& file, const std::string& depth,
+              const DepthModel* model, const Context& context, Json& report) {
+  const Photo photo = read_photo(file);
+  const PhotoLens lens = choose_lens(a.lens, photo, file, context);
+  View view;
+  view.world_from_cam = kPhotoPose;
+  view.color = photo.color;
+  view.intrinsics = lens.intrinsics;
+  report["lens"] = to_json(lens);
+  if (depth.empty()) {
+    if (model == nullptr) throw Error(file, "its depth is not given", "--depth FILE");
+    view.depth = photo_depth(model->net, photo.color, lens.intrinsics, model->scale);
+    report["depth"] = scale_report(*model, lens.intrinsics);
+  } else {
+    view.depth = read_depth_for(depth, a.depth_scale, photo.color.size(), context);
+    report["depth"] = {{"from", depth}};
+    check(view, file);
+    if (model != nullptr) report["depth"]["filled"] = fill_holes(view, *model);
+  }
+  check(view, file);
+  return view;
+}
+
+SceneInput read_frames(const SceneInputArguments& a, const Context& context) {
+  FrameChoice choice;
+  choice.every = a.every;
+  if (!a.frames.empty()) parse_frames(a.frames, choice);
+  const std::vector<RgbdFolder> folders = {open_rgbd_folder(a.photo)};
+  const std::vector<ChosenFrame> frames = choose_frames(folders, choice).used;
+  if (frames.empty())
+    throw Error("--frames", "no frame is in " + a.frames, "a range that has some");
+  SceneInput input;
+  std::vector<Pose> poses;
+  Progress progress(context, "frames", frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    FrameNotes notes;
+    View view = load_frame(*frames[i].folder, frames[i].frame, a.depth_scale, &notes);
+    progress.update(i + 1);
+    if (notes.without_depth) {
+      ++input.empty_views;
+      continue;
+    }
+    poses.push_back(view.world_from_cam);
+    input.views.push_back(std::move(view));
+  }
+  if (input.views.empty()) throw Error(a.photo, "no frame has any depth", "depth that is not 0");
+  input.up = up_axis(poses);
+  input.report["lens"] = to_json(input.views.front().intrinsics);
+  input.report["depth"] = {{"from", a.photo}, {"frames", input.views.size()}};
+  return input;
+}
+
+}  // namespace
+
+bool SceneInputArguments::is_folder() const {
+  std::error_code ignored;
+  return fs::is_directory(photo, ignored);
+}
+
+std::vector<fs::path> SceneInputArguments::files() const {
+  std::vector<fs::path> files;
+  for (const std::string& file : {photo, depth, lens.intrinsics, second, second_depth}) {
+    std::error_code ignored;
+    if (!file.empty() && fs::is_regular_file(file, ignored)) files.emplace_back(file);
+  }
+  return files;
+}
+
+void SceneInputArguments::add_to(CLI::App& verb) {
+  verb.add_option("photo", photo,
+                  "Photo: JPEG, PNG, TIFF, WebP, ...; or a folder of RGB-D frames (color/, depth/, "
+                  "trajectory.txt, intrinsics.json), whose first frame the scene starts from")
+      ->required()
+      ->type_name("PHOTO|DIR");
+  verb.add_option("--depth", depth,
+                  "The photo's depth: 16-bit PNG, or metres as PFM, 32-bit TIFF or EXR (default: "
+                  "estimated, metres not promised; holes are estimated too)")
+      ->type_name("FILE");
+  verb.add_option("--depth-scale", depth_scale, "Units of a 16-bit depth file in a metre")
+      ->type_name("S")
+      ->check(in_range(1e-6, kNoBound));
+  lens.add_to(verb);
+  verb.add_option("--frames", frames, "Of a folder: timestamps A:B, both included")
+      ->type_name("A:B");
+  verb.add_option("--every", every, "Of a folder: only every N-th frame")
+      ->type_name("N")
+      ->check(whole_in(1, 1000000));
+  add_lift_options(verb, lift);
+}
+
+SceneInput read_scene_input(const SceneInputArguments& a, const DepthModel* model, int longest,
+                            const Context& context) {
+  if (a.is_folder()) {
+    if (!a.depth.empty()) throw CLI::ValidationError("--depth", "a folder brings its own depth");
+    return read_frames(a, context);
+  }
+  SceneInput input;
+  const View photo = read_one(a, a.photo, a.depth, model, context, input.report);
+  input.views.push_back(shrunk(photo, longest, input.report));
+  return input;
+}
+
+}  // namespace ps::apps

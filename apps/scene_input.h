@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/context.h"
+#include "apps/depth_model.h"
+#include "apps/lens_arguments.h"
+#include "apps/report.h"
+#include "libps/geometry/lift.h"
+#include "libps/geometry/view.h"
+
+namespace ps::apps {
+
+/// What a scene is made from: a photo, two, or a folder of RGB-D frames.
+struct SceneInputArguments {
+  std::string photo;  ///< or the folder
+  std::string depth;
+  double depth_scale = 1000;
+  LensArguments lens;
+  std::string frames;  ///< of a folder
+  int every = 1;
+  std::string second, second_depth, second_pose = "auto";
+  LiftOptions lift;
+
+  void add_to(CLI::App& verb);
+  bool is_folder() const;
+  /// @return every file that is read, weights aside
+  std::vector<std::filesystem::path> files() const;
+};
+
+struct SceneInput {
+  std::vector<View> views;      ///< what was observed; the scene starts from the first
+  std::string up = "y";         ///< the world's axis
+  Json report;                  ///< what the report says of lens and depth
+  std::size_t empty_views = 0;  ///< frames that were left out, as they have no depth
+};
+
+/// @brief Reads it all. Depth that is not given, or has holes, is estimated by `model`.
+/// @param model    null = depth must be given
+/// @param longest  pixels: a photo with a longer side is shrunk to that before it is lifted
+/// Throws ps::Error.
+SceneInput read_scene_input(const SceneInputArguments& arguments, const DepthModel* model,
+                            int longest, const Context& context);
+
+}  // namespace ps::apps

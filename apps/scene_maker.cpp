@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/scene_maker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/interrupt.h"
+#include "apps/lift_arguments.h"
+#include "apps/scene_report.h"
+#include "io/trajectory.h"
+#include "libps/core/error.h"
+
+namespace ps::apps {
+namespace {
+
+constexpr std::size_t kSteps = 1000;  ///< of progress, for each view
+
+/// A photo's pixels are worth keeping down to half a pixel of the pictures.
+constexpr int kFinest = 2;
+
+constexpr const char* kGoOn =
+    "interrupted; the same command with --resume goes on with what was outpainted so far";
+
+}  // namespace
+
+SceneMaker::SceneMaker(const SceneArguments& arguments, const Json& settings,
+                       const Context& context)
+    : a_(arguments),
+      context_(context),
+      settings_(settings),
+      plan_options_(arguments.plan()),
+      options_(arguments.scene(context)) {
+  check_depth_range(a_.input.lift);
+  options_.outpaint.progress = [this](double done) {
+    bar_->update(done_ * kSteps + static_cast<std::size_t>(std::lround(done * kSteps)));
+    return true;
+  };
+}
+
+void SceneMaker::load_networks() {
+  const Stopwatch watch;
+  if (!a_.no_outpaint) {
+    models_ = std::make_unique<SceneModels>(a_.weights, a_.select, context_);
+  } else if (a_.input.depth.empty() && !a_.input.is_folder()) {
+    depth_ = std::make_unique<DepthModel>(load_depth_model(a_.weights, context_));
+  }
+  report_["seconds"]["load_networks"] = watch.seconds();
+}
+
+void SceneMaker::make_plan() {
+  plan_ = plan_scene(input_.views.front().world_from_cam, plan_options_);
+  if (a_.support_views.empty()) return;
+  std::size_t number = 0;
+  for (const StampedPose& pose : read_trajectory(a_.support_views)) {
+    plan_.push_back({"support_" + std::to_string(++number), pose.world_from_cam, true});
+  }
+}
+
+void SceneMaker::observe() {
+  const Stopwatch watch;
+  AddReport sum;
+  const Intrinsics& lens = input_.views.front().intrinsics;
+  SceneCloud plain(options_.cloud);
+  if (models_) builder_ = std::make_unique<SceneBuilder>(models_->networks(), lens, options_);
+  const bool apart = models_ && plan_options_.strategy == Strategy::independent;
+  if (apart) apart_ = std::make_unique<SceneBuilder>(models_->networks(), lens, options_);
+  for (std::size_t i = 0; i < input_.views.size(); ++i) {
+    throw_if_interrupted();
+    const auto number = static_cast<std::uint16_t>(i);
+    const View& view = input_.views[i];
+    sum += builder_ ? builder_->observe(view, number) : plain.add(view, number);
+    if (apart_) apart_->observe(view, number);
+  }
+  cloud_ = builder_ ? builder_->cloud() : plain.cloud();
+  if (cloud_.empty()) {
+    throw Error(a_.input.photo, "no pixel can be lifted", "depth in the range asked for");
+  }
+  report_["observed"] = to_json(sum);
+  report_["seconds"]["observe"] = watch.seconds();
+}
+
+SupportView SceneMaker::outpaint(const PlannedView& view, std::uint16_t number) {
+  SupportView support;
+  Json report;
+  if (work_->load(number, support, report)) {
+    support.view.intrinsics = builder_->lens();
+    support.view.world_from_cam = view.world_from_cam;
+    report["resumed"] = true;
+  } else {
+    SceneBuilder& source = apart_ ? *apart_ : *builder_;
+    support = source.outpaint(view.world_from_cam, number);
+    report = to_json(view.name, support.report, options_.outpaint.samples);
+    work_->save(number, support, report);
+  }
+  const Stopwatch watch;
+  report["points"] = to_json(builder_->add(support, number));
+  if (report.contains("seconds")) report["seconds"]["add"] = watch.seconds();
+  report_["outpainted"].push_back(report);
+  ++done_;
+  bar_->update(done_ * kSteps);
+  return support;
+}
+
+void SceneMaker::outpaint_all() {
+  const Stopwatch watch;
+  report_["outpainted"] = Json::array();
+  const auto wanted =
+      std::count_if(plan_.begin(), plan_.end(), [](const auto& view) { return view.outpaint; });
+  bar_ =
+      std::make_unique<Progress>(context_, "outpaint", static_cast<std::size_t>(wanted) * kSteps);
+  const bool shown = plan_options_.strategy != Strategy::support;
+  if (shown) painted_.resize(plan_.size());
+  for (std::size_t i = 0; i < plan_.size(); ++i) {
+    if (!plan_[i].outpaint) continue;
+    const std::size_t number = input_.views.size() + done_;
+    const SupportView support = outpaint(plan_[i], static_cast<std::uint16_t>(number));
+    if (shown) painted_[i] = support.view.color;
+  }
+  bar_.reset();
+  cloud_ = builder_->cloud();
+  report_["seconds"]["outpaint"] = watch.seconds();
+}
+
+void SceneMaker::make() {
+  load_networks();
+  const Stopwatch watch;
+  const DepthModel* depth = models_ ? &models_->depth() : depth_.get();
+  input_ = read_scene_input(a_.input, depth, kFinest * a_.view_size, context_);
+  report_.update(input_.report);
+  report_["seconds"]["read_input"] = watch.seconds();
+  make_plan();
+  if (plan_.size() + input_.views.size() > 65536) {
+    throw Error("scene", "there are more than 65536 views", "fewer frames or support views");
+  }
+  observe();
+  if (!models_) return;
+  std::vector<std::filesystem::path> inputs = a_.input.files();
+  inputs.insert(inputs.end(), models_->files().begin(), models_->files().end());
+  work_ = std::make_unique<SceneWork>(a_.output, settings_, inputs, a_.resume);
+  try {
+    outpaint_all();
+  } catch (const Interrupted&) {
+    throw Interrupted(kGoOn);
+  }
+}
+
+void SceneMaker::finish() {
+  if (work_) work_->finish();
+}
+
+}  // namespace ps::apps

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "apps/progress.h"
+#include "apps/scene_arguments.h"
+#include "apps/scene_models.h"
+#include "apps/scene_work.h"
+#include "libps/geometry/point.h"
+
+namespace ps::apps {
+
+/// @brief From the arguments of `scene` to its cloud: reads, observes, outpaints.
+class SceneMaker {
+ public:
+  /// Throws CLI::ValidationError where arguments do not go together.
+  SceneMaker(const SceneArguments& arguments, const Json& settings, const Context& context);
+
+  /// @brief Makes the cloud. Throws ps::Error, and Interrupted: what was outpainted until then is
+  /// kept for --resume.
+  void make();
+  /// The scene is complete and in its place: what --resume would need is removed.
+  void finish();
+
+  const SceneInput& input() const { return input_; }
+  const Cloud& cloud() const { return cloud_; }
+  const std::vector<PlannedView>& plan() const { return plan_; }
+  /// Null where nothing is outpainted.
+  const SceneModels* models() const { return models_.get(); }
+  /// Pictures of views that are shown as they were outpainted (strategies other than support), in
+  /// the order of the plan; empty where the cloud is splatted.
+  const std::vector<Image>& painted() const { return painted_; }
+  const Intrinsics& painted_lens() const { return builder_->lens(); }
+  /// Of observing and outpainting; its `seconds` are those of the stages.
+  const Json& report() const { return report_; }
+
+ private:
+  void load_networks();
+  void make_plan();
+  void observe();
+  void outpaint_all();
+  SupportView outpaint(const PlannedView& view, std::uint16_t number);
+
+  const SceneArguments& a_;
+  const Context& context_;
+  const Json settings_;
+  const PlanOptions plan_options_;
+  SceneOptions options_;
+  std::unique_ptr<SceneModels> models_;
+  std::unique_ptr<DepthModel> depth_;  ///< where nothing is outpainted
+  SceneInput input_;
+  std::vector<PlannedView> plan_;
+  std::unique_ptr<SceneWork> work_;
+  std::unique_ptr<SceneBuilder> builder_;
+  std::unique_ptr<SceneBuilder> apart_;  ///< what was observed alone, for independent views
+  std::unique_ptr<Progress> bar_;
+  std::size_t done_ = 0;  ///< views that are outpainted
+  std::vector<Image> painted_;
+  Cloud cloud_;
+  Json report_;
+};
+
+}  // namespace ps::apps

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/scene_models.h"
+
+#include <algorithm>
+#include <system_error>
+
+#include "apps/default_weights.h"
+#include "io/weights_file.h"
+#include "libps/core/error.h"
+
+namespace fs = std::filesystem;
+
+namespace ps::apps {
+namespace {
+
+/// Where the weights of one network are.
+fs::path file_of(const std::string& weights, const std::string& name) {
+  if (weights.empty()) return default_weights(name);
+  std::error_code ignored;
+  return fs::is_directory(weights, ignored) ? fs::path(weights) / name : fs::path(weights);
+}
+
+}  // namespace
+
+const std::vector<std::string>& selection_names() {
+  static const std::vector<std::string> names = {"both", "discriminator", "classifier",
+                                                 "likelihood"};
+  return names;
+}
+
+SceneModels::SceneModels(const std::string& weights, const std::string& selection,
+                         const Context& context) {
+  const auto read = [&](const char* name) {
+    const fs::path file = file_of(weights, name);
+    if (std::find(files_.begin(), files_.end(), file) == files_.end()) files_.push_back(file);
+    return read_weights(file);
+  };
+  const auto wants = [&](const char* name) { return selection == "both" || selection == name; };
+  files_.push_back(file_of(weights, "depth.safetensors"));
+  depth_ = std::make_unique<DepthModel>(load_depth_model(files_.front().string(), context));
+  autoencoder_ = std::make_unique<models::Autoencoder>(read("vqvae.safetensors"));
+  pixel_cnn_ = std::make_unique<models::PixelCnn>(read("pixelcnn.safetensors"));
+  const nn::Weights refine = read("refine.safetensors");
+  refiner_ = std::make_unique<models::Refiner>(refine);
+  if (wants("discriminator")) {
+    discriminator_ = std::make_unique<models::Discriminator>(refine);
+    scorers_.push_back(outpaint::discriminator_scorer(*discriminator_));
+  }
+  if (wants("classifier")) {
+    classifier_ = std::make_unique<models::Classifier>(read("classifier.safetensors"));
+    scorers_.push_back(outpaint::entropy_scorer(*classifier_));
+  }
+  if (pixel_cnn_->codes() != autoencoder_->codes()) {
+    throw Error(files_.front().string(),
+                "the autoencoder has " + std::to_string(autoencoder_->codes()) +
+                    " codes, the PixelCNN " + std::to_string(pixel_cnn_->codes()),
+                "networks that were trained together");
+  }
+}
+
+SceneNetworks SceneModels::networks() const {
+  return {{autoencoder_.get(), pixel_cnn_.get(), refiner_.get(), scorers_},
+          &depth_->net,
+          depth_->scale};
+}
+
+}  // namespace ps::apps

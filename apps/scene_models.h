@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/context.h"
+#include "apps/depth_model.h"
+#include "libps/scene/scene_builder.h"
+
+namespace ps::apps {
+
+/// @return the names that --select takes: both, discriminator, classifier, likelihood
+const std::vector<std::string>& selection_names();
+
+/// @brief The networks of a scene, from weights files.
+class SceneModels {
+ public:
+  /// @param weights    one file that holds all networks, a folder of depth, vqvae, pixelcnn, refine
+  ///                   and classifier.safetensors, or empty: what comes with the program
+  /// @param selection  which opinions keep the best completion, of selection_names()
+  /// Throws ps::Error that names file and tensor when one is missing or misshapen.
+  SceneModels(const std::string& weights, const std::string& selection, const Context& context);
+
+  SceneNetworks networks() const;
+  const DepthModel& depth() const { return *depth_; }
+  const models::Refiner* refiner() const { return refiner_.get(); }
+  const std::vector<std::filesystem::path>& files() const { return files_; }
+
+ private:
+  std::vector<std::filesystem::path> files_;
+  std::unique_ptr<DepthModel> depth_;
+  std::unique_ptr<models::Autoencoder> autoencoder_;
+  std::unique_ptr<models::PixelCnn> pixel_cnn_;
+  std::unique_ptr<models::Refiner> refiner_;
+  std::unique_ptr<models::Discriminator> discriminator_;
+  std::unique_ptr<models::Classifier> classifier_;
+  std::vector<outpaint::Scorer> scorers_;
+};
+
+}  // namespace ps::apps

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/scene_report.h"
+
+namespace ps::apps {
+
+Json to_json(const AddReport& r) {
+  return {{"lifted", r.lifted},
+          {"explained", r.explained},
+          {"duplicates", r.duplicates},
+          {"added", r.added},
+          {"replaced", r.replaced}};
+}
+
+Json to_json(const std::string& name, const SupportReport& r, int samples) {
+  Json json = {{"view", name}, {"missing_share", r.missing_share}};
+  if (r.best < 0) {
+    json["skipped"] = "nothing is missing";
+    return json;
+  }
+  const outpaint::OutpaintReport& o = r.outpaint;
+  json["cells"] = {{"sampled", o.missing_cells}, {"spared", o.cells - o.missing_cells}};
+  json["completions"] = {
+      {"drawn", o.drawn}, {"spared", samples - o.drawn}, {"refined", o.refined}, {"kept", r.best}};
+  json["depth"] = {{"agreed", r.agreed},       {"scale", r.scale},
+                   {"exponent", r.exponent},   {"residual", r.residual},
+                   {"seam_step", r.seam_step}, {"seam_step_before_blend", r.seam_step_before}};
+  if (!r.agreed) json["depth"]["why"] = r.why;
+  json["pixels"] = {{"to_add", r.pixels}, {"refused_in_free_space", r.refused}};
+  json["seconds"] = {{"splat", r.splat_seconds},   {"encode", o.encode_seconds},
+                     {"sample", o.sample_seconds}, {"decode", o.decode_seconds},
+                     {"refine", o.refine_seconds}, {"score", o.score_seconds},
+                     {"depth", r.depth_seconds},   {"align", r.align_seconds}};
+  return json;
+}
+
+}  // namespace ps::apps

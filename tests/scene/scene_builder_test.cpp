@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/scene/scene_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgproc.hpp>
+
+#include "libps/core/error.h"
+#include "libps/core/parallel.h"
+#include "libps/geometry/point.h"
+#include "libps/scene/camera_path.h"
+#include "libps/scene/view_renderer.h"
+#include "tests/support/box_world.h"
+#include "tests/support/random_weights.h"
+#include "tests/support/same_points.h"
+
+namespace ps {
+namespace {
+
+/// Narrow networks by chance: what they paint is noise, but where it goes is not.
+struct Networks {
+  models::Autoencoder autoencoder{models::random_autoencoder(16, 8, 8, 24)};
+  models::PixelCnn pixel_cnn{models::random_pixel_cnn(11, 24)};
+  models::Refiner refiner{models::random_refiner(8)};
+  models::DepthNet depth{models::random_depth_net(4)};
+
+  SceneNetworks all() const { return {{&autoencoder, &pixel_cnn, &refiner, {}}, &depth, {}}; }
+};
+const Networks& networks() {
+  static const Networks kNetworks;
+  return kNetworks;
+}
+
+SceneOptions few_samples() {
+  SceneOptions options;
+  options.outpaint.samples = 2;
+  return options;
+}
+
+const Intrinsics kLens = intrinsics_from_fov(320, 256, 65);
+
+View input_view() { return box_world_view(kLens, pose_at(0, 0, -1, 0.1)); }
+
+Pose turned(const Pose& start, double radians) {
+  return start * Pose(Eigen::AngleAxisd(radians, Eigen::Vector3d::UnitY()));
+}
+
+SceneBuilder observed_scene(const SceneOptions& options = few_samples()) {
+  SceneBuilder scene(networks().all(), kLens, options);
+  scene.observe(input_view(), 0);
+  return scene;
+}
+
+std::size_t outpainted_in(const Cloud& cloud) {
+  std::size_t count = 0;
+  for (const Point& point : cloud) count += point.origin == 1;
+  return count;
+}
+
+TEST(SceneBuilder, where_nothing_is_missing_nothing_is_invented) {
+  SceneBuilder scene = observed_scene();
+  const SupportView support = scene.outpaint(input_view().world_from_cam, 1);
+  EXPECT_EQ(support.report.best, -1);
+  EXPECT_EQ(cv::countNonZero(support.pixels), 0);
+  const std::size_t before = scene.cloud().size();
+  EXPECT_EQ(scene.add(support, 1).added, 0u);
+  EXPECT_EQ(scene.cloud().size(), before);
+}
+
+TEST(SceneBuilder, outpainting_leaves_what_was_observed_as_it_was) {
+  SceneBuilder scene = observed_scene();
+  const Cloud before = scene.cloud();
+  const SupportView support = scene.outpaint(turned(input_view().world_from_cam, 0.5), 1);
+  EXPECT_GT(support.report.missing_share, 0.2);
+  EXPECT_GT(scene.add(support, 1).added, 10000u);
+  const Cloud& after = scene.cloud();
+  ASSERT_GT(after.size(), before.size());
+  EXPECT_TRUE(same_points(before, after, before.size()));
+  EXPECT_EQ(outpainted_in(before), 0u);
+  EXPECT_EQ(outpainted_in(after), after.size() - before.size());
+}
+
+TEST(SceneBuilder, invented_points_never_stand_before_what_was_observed) {
+  SceneBuilder scene = observed_scene();
+  const View input = input_view();
+  // Beside the turn, a step aside: what the input saw is seen from elsewhere, with holes behind it.
+  for (int i = 0; i < 2; ++i) {
+    Pose pose = turned(input.world_from_cam, i == 0 ? 0.4 : -0.4);
+    pose.translation() += Eigen::Vector3d(i == 0 ? -0.4 : 0.4, 0, 0.2);
+    scene.add(scene.outpaint(pose, static_cast<std::uint16_t>(1 + i)),
+              static_cast<std::uint16_t>(1 + i));
+  }
+  std::size_t invented = 0, before = 0;
+  const Pose cam_from_world = input.world_from_cam.inverse();
+  Depth nearest;  // a silhouette may be a pixel off
+  cv::erode(input.depth, nearest, {});
+  for (const Point& point : scene.cloud()) {
+    if (point.origin == 0) continue;
+    ++invented;
+    const Eigen::Vector3d p = cam_from_world * point.getVector3fMap().cast<double>();
+    if (p.z() <= 0) continue;
+    const Eigen::Vector2d at = kLens.project(p);
+    const int x = static_cast<int>(std::lround(at.x())), y = static_cast<int>(std::lround(at.y()));
+    if (x < 0 || y < 0 || x >= kLens.width || y >= kLens.height) continue;
+    before += p.z() < 0.95 * nearest(y, x);
+  }
+  EXPECT_GT(invented, 10000u);
+  EXPECT_LT(static_cast<double>(before), 0.01 * static_cast<double>(invented));
+}
+
+TEST(SceneBuilder, what_is_outpainted_once_is_not_outpainted_again) {
+  SceneBuilder scene = observed_scene();
+  const Pose pose = turned(input_view().world_from_cam, 0.5);
+  const SupportView first = scene.outpaint(pose, 1);
+  scene.add(first, 1);
+  const SupportView again = scene.outpaint(pose, 2);
+  EXPECT_LT(again.report.missing_share, 0.05 * first.report.missing_share);
+}
+
+TEST(SceneBuilder, the_same_bytes_come_from_any_number_of_threads) {
+  std::vector<Cloud> clouds;
+  for (const int threads : {1, 3}) {
+    set_threads(threads);
+    SceneBuilder scene = observed_scene();
+    scene.add(scene.outpaint(turned(input_view().world_from_cam, -0.5), 1), 1);
+    clouds.push_back(scene.cloud());
+  }
+  set_threads(0);
+  EXPECT_TRUE(same_points(clouds[0], clouds[1]));
+}
+
+TEST(SceneBuilder, stops_when_told_to_and_the_cloud_stays) {
+  SceneOptions options = few_samples();
+  options.outpaint.progress = [](double) { return false; };
+  SceneBuilder scene = observed_scene(options);
+  const std::size_t before = scene.cloud().size();
+  const SupportView support = scene.outpaint(turned(input_view().world_from_cam, 0.5), 1);
+  EXPECT_TRUE(support.view.color.empty());
+  EXPECT_EQ(scene.add(support, 1).added, 0u);
+  EXPECT_EQ(scene.cloud().size(), before);
+}
+
+TEST(SceneBuilder, a_tiny_photo_leaves_no_holes_in_its_own_view) {
+  const Intrinsics tiny = intrinsics_from_fov(16, 16, 60);
+  SceneBuilder scene(networks().all(), tiny, few_samples());
+  const View view = box_world_view(tiny, pose_at(0, 0, -1, 0.1));
+  scene.observe(view, 0);
+  EXPECT_EQ(scene.outpaint(view.world_from_cam, 1).report.missing_share, 0);
+}
+
+TEST(ViewRenderer, without_a_network_a_view_is_the_splat) {
+  SceneBuilder scene = observed_scene();
+  const View input = input_view();
+  SplatOptions options;
+  options.renormalise = true;
+  const RenderedView view =
+      ViewRenderer(nullptr).render(scene.cloud(), kLens, input.world_from_cam);
+  EXPECT_EQ(cv::norm(view.color, splat(scene.cloud(), kLens, input.world_from_cam, options).color,
+                     cv::NORM_INF),
+            0);
+}
+
+TEST(ViewRenderer, detail_comes_from_the_cloud_and_the_rest_from_the_network) {
+  SceneBuilder scene = observed_scene();
+  const Pose pose = turned(input_view().world_from_cam, 0.4);
+  ViewRendererOptions bare;
+  bare.detail_from = 0;
+  const RenderedView refined =
+      ViewRenderer(&networks().refiner, bare).render(scene.cloud(), kLens, pose);
+  const RenderedView detailed =
+      ViewRenderer(&networks().refiner).render(scene.cloud(), kLens, pose);
+  const Mask unseen = detailed.splat.hit == 0;
+  EXPECT_GT(cv::countNonZero(unseen), 1000);
+  EXPECT_GT(detailed.missing_share, 0.1);
+  EXPECT_EQ(cv::norm(refined.color, detailed.color, cv::NORM_INF, unseen), 0);
+  EXPECT_GT(cv::norm(refined.color, detailed.color, cv::NORM_L1, detailed.splat.hit), 100);
+  EXPECT_TRUE(cv::checkRange(detailed.color, true, nullptr, 0, 1.0001));
+}
+
+}  // namespace
+}  // namespace ps
