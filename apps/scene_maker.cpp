@@ -75,7 +75,7 @@ void SceneMaker::observe() {
   if (cloud_.empty()) {
     throw Error(a_.input.photo, "no pixel can be lifted", "depth in the range asked for");
   }
-  report_["observed"] = to_json(sum);
+  report_["pixels"] = to_json(sum);
   report_["seconds"]["observe"] = watch.seconds();
 }
 
@@ -95,7 +95,7 @@ SupportView SceneMaker::outpaint(const PlannedView& view, std::uint16_t number) 
   const Stopwatch watch;
   report["points"] = to_json(builder_->add(support, number));
   if (report.contains("seconds")) report["seconds"]["add"] = watch.seconds();
-  report_["outpainted"].push_back(report);
+  report_["support_views"].push_back(report);
   ++done_;
   bar_->update(done_ * kSteps);
   return support;
@@ -103,7 +103,7 @@ SupportView SceneMaker::outpaint(const PlannedView& view, std::uint16_t number) 
 
 void SceneMaker::outpaint_all() {
   const Stopwatch watch;
-  report_["outpainted"] = Json::array();
+  report_["support_views"] = Json::array();
   const auto wanted =
       std::count_if(plan_.begin(), plan_.end(), [](const auto& view) { return view.outpaint; });
   bar_ =

@@ -34,12 +34,11 @@ struct Picture {
 };
 
 /// The lens of the pictures: the photo's, its long side at most `longest`, but its short side at
-/// least what networks see.
-Intrinsics lens_of_pictures(const Intrinsics& photo, int longest) {
-  constexpr double kNetworks = 256;
+/// least `shortest`.
+Intrinsics lens_of_pictures(const Intrinsics& photo, int longest, int shortest) {
   const double longer = std::max(photo.width, photo.height);
   const double shorter = std::min(photo.width, photo.height);
-  const double scale = std::max(std::min(1.0, longest / longer), kNetworks / shorter);
+  const double scale = std::max(std::min(1.0, longest / longer), shortest / shorter);
   if (scale == 1) return photo;
   const auto side = [&](int length) { return static_cast<int>(std::lround(length * scale)); };
   return resized(photo, side(photo.width), side(photo.height));
@@ -168,7 +167,9 @@ void run_scene(const SceneArguments& a, const CLI::App& verb, const Context& con
   const Stopwatch total;
   OutputFolder folder(a.output);
   scene.make();
-  const Intrinsics lens = lens_of_pictures(scene.input().views.front().intrinsics, a.view_size);
+  constexpr int kNetworks = 256;  // pixels of a short side that networks see
+  const Intrinsics lens = lens_of_pictures(scene.input().views.front().intrinsics, a.view_size,
+                                           scene.models() != nullptr ? kNetworks : 1);
   ViewRenderer renderer = renderer_of(scene, context);
   Stopwatch watch;
   const std::vector<Picture> pictures = render_views(scene, lens, renderer, context);

@@ -8,6 +8,8 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <string>
 
 #include "io/cloud_file.h"
@@ -110,6 +112,31 @@ void write_photos(const fs::path& dir) {
   write_depth(dir / "zero.png", Depth::zeros(kHeight, kWidth));
   write_intrinsics(dir / "lens.json", view.intrinsics);
   write_intrinsics(dir / "square_lens.json", intrinsics_from_fov(64, 64, 60));
+}
+
+/// Photos and depths that are odd, and sound all the same.
+void write_odd_photos(const fs::path& dir) {
+  const View view = view_from(Pose::Identity());
+  write_image(dir / "flat.png", Image(kHeight, kWidth, cv::Vec3f(0.4f, 0.5f, 0.6f)));
+  Image noise(kHeight, kWidth);
+  cv::theRNG().state = 1;
+  cv::randu(noise, 0, 1);
+  write_image(dir / "noise.png", noise);
+  cv::Mat bytes, grey, alpha, deep;
+  view.color.convertTo(bytes, CV_8U, 255);
+  cv::cvtColor(bytes, grey, cv::COLOR_RGB2GRAY);
+  cv::cvtColor(bytes, alpha, cv::COLOR_RGB2BGRA);
+  view.color.convertTo(deep, CV_16U, 65535);
+  cv::imwrite((dir / "grey.png").string(), grey);
+  cv::imwrite((dir / "alpha.png").string(), alpha);
+  cv::imwrite((dir / "deep.png").string(), deep);
+  write_depth(dir / "depth_equal.png", Depth(kHeight, kWidth, 2.0f));
+  write_depth(dir / "depth_near.png", Depth(kHeight, kWidth, 0.1f));
+  Depth holes = view.depth.clone();
+  for (int i = 0; i < static_cast<int>(holes.total()); ++i) {
+    if (i % 10 != 0) holes(i / kWidth, i % kWidth) = 0;
+  }
+  write_depth(dir / "depth_holes.png", holes);
 }
 
 void write_clouds(const fs::path& dir) {
@@ -225,6 +252,7 @@ int main(int argc, char** argv) try {
   ps::write_walk(dir / "part_a", 0, 4);
   ps::write_walk(dir / "part_b", 4, 7);
   ps::write_photos(dir);
+  ps::write_odd_photos(dir);
   ps::write_clouds(dir);
   ps::write_bad_files(dir);
   ps::write_tensors(dir);

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "libps/scene/scene_builder.h"
+#include "libps/scene/scene_plan.h"
+#include "libps/scene/view_renderer.h"
+
+namespace ps {
+
+/// A picture that a strategy makes of a planned view, through the networks' lens.
+struct ShownView {
+  PlannedView plan;
+  Image image;
+};
+
+/// @brief Makes all views of a plan by its strategy (PixelSynth, section 4.3), from one input:
+/// `support` splats and refines the accumulated cloud into each; the others show what was outpainted
+/// in each.
+/// @param plan      of plan_scene() from the input's pose
+/// @param strategy  that the plan was made for
+/// @param make_support  how a view is outpainted; empty = SceneBuilder::outpaint(). Ablations
+/// replace it.
+/// @return views in the order of the plan
+std::vector<ShownView> show_scene(
+    const View& input, const std::vector<PlannedView>& plan, Strategy strategy,
+    const SceneNetworks& networks, const SceneOptions& options,
+    const ViewRendererOptions& renderer,
+    const std::function<SupportView(SceneBuilder&, const Pose&, std::uint16_t)>& make_support = {});
+
+}  // namespace ps

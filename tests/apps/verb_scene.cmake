@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# `scene` with the shipped weights: outpainting, resuming, odd photos.
+app_test(scene_outpaints_what_the_photo_does_not_show [=[
+  works --json scene $S/photo.png --depth $S/depth.png --fov 70 -o s --samples 1 --directions left,up
+  writes s/scene.ply s/preview.png s/trajectory.txt s/intrinsics.json s/report.json s/settings.json
+  for v in input left_1 left up_1 up; do writes s/views/$v.png; done
+  is "$(ls s/views | wc -l)" -eq 5
+  is "$(size_of s/views/left.png)" = 384x256
+  is "$(json outpainted s/report.json)" -gt 10000
+  is "$(json observed s/report.json)" -gt 10000
+  for key in seam_step residual '"sampled"' '"spared"' '"kept"' refused_in_free_space '"encode"'; do
+    grep -q "$key" s/report.json || complain "$key is missing"
+  done
+  is ! -e s.work]=])
+app_test(scene_needs_nothing_but_a_photo [=[
+  works scene $S/photo.png --fov 70 -o s --samples 1 --directions left,up
+  is "$(json outpainted s/report.json)" -gt 10000]=])
+app_test(scene_does_not_depend_on_threads [=[
+  works --threads 1 scene $S/photo.png --fov 70 -o a --samples 3 --directions left,up
+  works --threads 3 scene $S/photo.png --fov 70 -o b --samples 3 --directions left,up
+  cmp a/scene.ply b/scene.ply
+  cmp a/views/left.png b/views/left.png]=])
+app_test(scene_seed_decides_what_is_invented [=[
+  works --seed 1 scene $S/photo.png --fov 70 -o a --samples 1 --directions left
+  works --seed 2 scene $S/photo.png --fov 70 -o b --samples 1 --directions left
+  ! cmp -s a/scene.ply b/scene.ply]=])
+app_test(scene_goes_on_after_an_interruption_to_the_same_bytes [=[
+  args="$S/photo.png --fov 70 --samples 8 --directions left,right,up,down"
+  works scene $args -o whole
+  env --default-signal=INT $program -q scene $args -o s &
+  for i in $(seq 600); do
+    [ ! -e s.work/1.safetensors ] || break
+    sleep 0.1
+  done
+  kill -INT $!
+  wait $! || true
+  is -e s.work/1.safetensors
+  is ! -e s
+  fails 1 's.work: is of a run with other settings.*resume' -q scene $args --seed 9 -o s --resume
+  works scene $args -o s --resume
+  grep -q '"resumed": true' s/report.json
+  cmp s/scene.ply whole/scene.ply
+  cmp s/views/down.png whole/views/down.png
+  is ! -e s.work]=])
+app_test(scene_strategies_differ [=[
+  for s in support sequential independent; do
+    works scene $S/photo.png --fov 70 -o $s --samples 1 --directions left --strategy $s
+  done
+  is "$(grep -c '"missing_share".*' support/report.json)" -lt "$(grep -c '"missing_share"' sequential/report.json)"
+  ! cmp -s sequential/views/left.png independent/views/left.png]=])
+app_test(scene_outpaints_further_views_of_a_trajectory [=[
+  echo '0 0.2 0 0 0.996 0 0.087 0' > poses.txt
+  works scene $S/photo.png --fov 70 -o s --samples 1 --directions left --support-views poses.txt
+  writes s/views/support_1.png
+  fails 1 'absent.txt' scene $S/photo.png --fov 70 -o t --samples 1 --support-views absent.txt]=])
+app_test(scene_makes_videos_that_browsers_play [=[
+  needs ffprobe
+  works scene $S/photo.png --fov 70 -o s --samples 1 --directions left --paths sway,left --path-frames 4
+  writes s/sway.mp4 s/left.mp4
+  ffprobe -v error -show_entries stream=codec_name,pix_fmt,nb_frames -of csv=p=0 s/sway.mp4 > probe.txt
+  grep -qx 'h264,yuv420p,4' probe.txt || complain "$(cat probe.txt)"
+  fails 1 'absent.txt' scene $S/photo.png -o t --paths absent.txt
+  fails 2 'two of them would be sway' scene $S/photo.png -o t --paths sway,sway]=])
+app_test(scene_continues_a_folder_of_frames [=[
+  works scene $S/walk -o s --samples 1 --directions left
+  is "$(json outpainted s/report.json)" -gt 1000
+  is "$(json observed s/report.json)" -gt 5000
+  fails 2 'own depth' scene $S/walk --depth $S/depth.png -o t]=])
+app_test(scene_of_odd_photos_is_made_or_refused_in_one_line [=[
+  for p in p16x16 p20x600 grey deep alpha flat noise; do
+    works scene $S/$p.png --fov 60 -o $p --samples 1 --directions left
+    writes $p/scene.ply
+  done
+  fails 1 '500x2.*100 short' scene $S/p500x2.png --fov 60 -o t --samples 1]=])
+app_test(scene_of_odd_ranges [=[
+  works scene $S/photo.png --fov 70 -o s --samples 1 --directions left --range-horizontal 0
+  grep -q 'nothing is missing' s/report.json
+  is "$(json outpainted s/report.json)" -eq 0
+  works scene $S/photo.png --fov 70 -o t --samples 1 --directions left --range-horizontal 180deg
+  is "$(json outpainted t/report.json)" -gt 10000]=])
+app_test(scene_of_odd_depths [=[
+  for d in equal holes near; do
+    works scene $S/photo.png --depth $S/depth_$d.png --fov 70 -o $d --samples 1 --directions left
+    is "$(json outpainted $d/report.json)" -gt 1000
+  done
+  grep -A3 '"filled"' holes/report.json | grep -q pixels]=])
+app_test(scene_refuses_what_it_cannot_do [=[
+  fails 2 "'35grad' is no angle.*34deg" scene $S/photo.png -o a --range-horizontal 35grad
+  fails 2 "'0'; expected 1 to 1000, or auto" scene $S/photo.png -o a --samples 0
+  fails 2 'refine-best' scene $S/photo.png -o a --samples auto --refine-best 3
+  fails 2 'directions' scene $S/photo.png -o a --directions back
+  fails 1 'vqvae.safetensors' scene $S/photo.png -o a --weights $S
+  fails 1 'absent' scene $S/photo.png -o a --weights absent.pth]=])
