@@ -27,4 +27,13 @@ PerceptualDistance lpips_distance(const models::Lpips& net) {
   };
 }
 
+FeatureNetwork lpips_features(const models::Lpips& net) {
+  return {"SqueezeNet 1.1 fire-9", [&net](const Image& image) {
+            nn::Workspace workspace;
+            std::vector<float> features(static_cast<std::size_t>(net.feature_count()));
+            net.features(to_tensor(image), features.data(), workspace);
+            return features;
+          }};
+}
+
 }  // namespace ps
