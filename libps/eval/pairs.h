@@ -44,9 +44,9 @@ struct Visibility {
 ///
 /// Where the target has a depth, its pixel is lifted and held against the source's depths at the
 /// four pixels around its projection: visible if it lies between these, where they are of one
-/// surface, or is as deep as one of them, within 1 % either way; else invisible if one is nearer.
-/// In neither mask is a pixel whose depth is not known, or the source's there, or where all of the
-/// source's are deeper, which cannot be.
+/// surface, or is as deep as one of them, within 1 % and a footprint; else invisible if one is
+/// nearer. In neither mask is a pixel whose depth is not known, or the source's there, or where all
+/// of the source's are deeper, which cannot be.
 ///
 /// If the target has no depth at all (it is empty), the source's pixels are lifted, and squares
 /// between neighbours of one surface are drawn into the target: visible is what they cover,
