@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "libps/core/error.h"
+#include "libps/eval/statistics.h"
 
 namespace ps {
 namespace {
@@ -21,13 +23,6 @@ void check_size(const cv::Size& size, const cv::Size& expected, const char* what
 }
 
 bool known(float depth) { return std::isfinite(depth) && depth > 0; }
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return (*middle + *std::max_element(values.begin(), middle)) / 2;
-}
 
 DepthErrors no_errors() {
   DepthErrors errors;
@@ -70,7 +65,7 @@ DepthErrors depth_errors(const Depth& depth, const Depth& truth, const Mask& whe
   errors.mean_abs /= count;
   errors.rmse = std::sqrt(square / count);
   for (double& share : errors.delta) share /= count;
-  errors.median_rel = median(relative);
+  errors.median_rel = median(std::move(relative));
   return errors;
 }
 

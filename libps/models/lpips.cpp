@@ -69,6 +69,14 @@ void compare(const nn::TensorView& x, const std::vector<float>& weights, float* 
   }
 }
 
+void check_images(const nn::TensorView& images) {
+  check_image(kName, images, 3, 1);
+  if (images.shape.height < Lpips::kSmallest || images.shape.width < Lpips::kSmallest) {
+    throw Error(kName, "the images are too small",
+                "sides of at least " + std::to_string(Lpips::kSmallest) + " pixels");
+  }
+}
+
 std::vector<float> read_weights(const Layers& layers, int index, int channels) {
   return layers.weight("lin" + std::to_string(index) + ".model.1", {1, channels, 1, 1}).values;
 }
@@ -115,6 +123,13 @@ Lpips::Lpips(const Layers& layers)
       first_weights_(read_weights(layers, 0, first_.out_channels())),
       fires_(read_fires(layers, first_.out_channels())) {}
 
+/// @return the first layer's output, taken from the workspace
+nn::TensorView Lpips::first(const nn::TensorView& scaled, nn::Workspace& workspace) const {
+  const nn::TensorView out = workspace.take(first_.output(scaled.shape));
+  first_(scaled, out, workspace, activated(nn::kRelu));
+  return out;
+}
+
 /// @return the block's output, taken from the workspace
 nn::TensorView Lpips::run(const Fire& fire, nn::TensorView x, nn::Workspace& workspace) {
   const nn::Shape in = fire.pooled ? nn::pooled_size(x.shape, kPool) : x.shape;
@@ -138,25 +153,42 @@ nn::TensorView Lpips::run(const Fire& fire, nn::TensorView x, nn::Workspace& wor
 
 void Lpips::distance(const nn::TensorView& a, const nn::TensorView& b, float* distances,
                      nn::Workspace& workspace) const {
-  check_image(kName, a, 3, 1);
+  check_images(a);
   check_shape(kName, "the second image", b, a.shape);
-  if (a.shape.height < kSmallest || a.shape.width < kSmallest) {
-    throw Error(kName, "the images are too small",
-                "sides of at least " + std::to_string(kSmallest) + " pixels");
-  }
   const int images = a.shape.images;
   const nn::Workspace::Scope scope(workspace);
   const nn::TensorView both =
       workspace.take({2 * images, a.shape.height, a.shape.width, a.shape.channels});
   scale_image(a, both.images(0, images));
   scale_image(b, both.images(images, images));
-  nn::TensorView x = workspace.take(first_.output(both.shape));
-  first_(both, x, workspace, activated(nn::kRelu));
+  nn::TensorView x = first(both, workspace);
   std::fill(distances, distances + images, 0.f);
   compare(x, first_weights_, distances, workspace);
   for (const Fire& fire : fires_) {
     x = run(fire, x, workspace);
     if (!fire.weights.empty()) compare(x, fire.weights, distances, workspace);
+  }
+}
+
+int Lpips::feature_count() const {
+  return fires_.back().expand1.out_channels() + fires_.back().expand3.out_channels();
+}
+
+void Lpips::features(const nn::TensorView& images, float* features,
+                     nn::Workspace& workspace) const {
+  check_images(images);
+  const nn::Workspace::Scope scope(workspace);
+  const nn::TensorView scaled = workspace.take(images.shape);
+  scale_image(images, scaled);
+  nn::TensorView x = first(scaled, workspace);
+  for (const Fire& fire : fires_) x = run(fire, x, workspace);
+  const auto count = static_cast<std::size_t>(x.shape.channels);
+  const std::size_t each = x.shape.pixels() / static_cast<std::size_t>(x.shape.images);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(x.shape.images) * count; ++i) {
+    const float* from = x.pixel(i / count * each) + i % count;
+    double sum = 0;
+    for (std::size_t p = 0; p < each; ++p) sum += from[p * x.stride];
+    features[i] = static_cast<float>(sum / static_cast<double>(each));
   }
 }
 

@@ -24,6 +24,13 @@ class Lpips {
   void distance(const nn::TensorView& a, const nn::TensorView& b, float* distances,
                 nn::Workspace& workspace) const;
 
+  /// @brief What the network makes of whole images: fire 9's outputs (torchvision's `features.12`),
+  /// each the mean over the pixels.
+  /// @param images  [n, h, w, 3], RGB in [-1,1]
+  /// @param features  n times feature_count() values, none below 0
+  void features(const nn::TensorView& images, float* features, nn::Workspace& workspace) const;
+  int feature_count() const;  ///< 512 at the published widths
+
  private:
   /// SqueezeNet's: 1x1 to few channels, then 1x1 and 3x3 side by side.
   struct Fire {
@@ -33,6 +40,7 @@ class Lpips {
   };
   explicit Lpips(const Layers& layers);
   static std::vector<Fire> read_fires(const Layers& layers, int in);
+  nn::TensorView first(const nn::TensorView& scaled, nn::Workspace& workspace) const;
   static nn::TensorView run(const Fire& fire, nn::TensorView x, nn::Workspace& workspace);
 
   nn::Convolution first_;

@@ -2,7 +2,9 @@
 // LPIPS gives its authors' distances, and those of an obvious version.
 #include "libps/models/lpips.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "io/photo.h"
 #include "io/weights_file.h"
@@ -62,6 +64,17 @@ class SlowLpips {
       }
     }
     return sum;
+  }
+
+  /// Of fire 9, each channel's mean over the pixels.
+  std::vector<double> pooled(const nn::TensorView& image) const {
+    const slow::Values last = features(image).back();
+    const auto channels = static_cast<std::size_t>(last.shape.channels);
+    std::vector<double> means(channels);
+    for (std::size_t i = 0; i < last.values.size(); ++i) {
+      means[i % channels] += last.values[i] / static_cast<double>(last.shape.pixels());
+    }
+    return means;
   }
 
  private:
@@ -142,6 +155,31 @@ TEST(Lpips, equals_an_obvious_version_at_several_sizes) {
   }
 }
 
+TEST(Lpips, features_equal_those_of_an_obvious_version) {
+  const nn::Weights weights = random_lpips(8);
+  const Lpips net(weights);
+  const SlowLpips expected(weights);
+  nn::Workspace workspace;
+  for (const auto& [height, width] : {std::pair<int, int>{64, 50}, {17, 17}}) {
+    nn::Tensor images({2, height, width, 3});
+    for (std::size_t i = 0; i < images.shape().pixels() * 3; ++i) {
+      images.data()[i] = std::sin(0.05f * static_cast<float>(i % 1009));
+    }
+    const auto count = static_cast<std::size_t>(net.feature_count());
+    ASSERT_EQ(count, 64u);
+    std::vector<float> features(2 * count);
+    net.features(images, features.data(), workspace);
+    for (std::size_t n = 0; n < 2; ++n) {
+      const auto wanted = expected.pooled(images.view().images(static_cast<int>(n), 1));
+      const double most = *std::max_element(wanted.begin(), wanted.end());
+      EXPECT_GT(most, 0.01);
+      for (std::size_t c = 0; c < count; ++c) {
+        EXPECT_NEAR(features[n * count + c], wanted[c], 1e-5 * most);
+      }
+    }
+  }
+}
+
 TEST(Lpips, is_zero_for_the_same_image_and_the_same_both_ways) {
   const Lpips net(random_lpips(8));
   nn::Workspace workspace;
@@ -167,6 +205,10 @@ TEST(Lpips, refuses_what_does_not_fit) {
   };
   EXPECT_TRUE(has(measure({1, 16, 32, 3}, {1, 16, 32, 3}), "at least 17 pixels"));
   EXPECT_TRUE(has(measure({1, 32, 32, 3}, {1, 32, 33, 3}), "the second image has the shape"));
+  EXPECT_TRUE(has(error_of([&] {
+                    net.features(nn::Tensor({1, 16, 32, 3}), &distance, workspace);
+                  }),
+                  "at least 17 pixels"));
   auto tensors = random_lpips(8).tensors();
   tensors.erase("lin4.model.1.weight");
   EXPECT_TRUE(has(error_of([&] { Lpips(nn::Weights("w", tensors)); }), "'lin4.model.1.weight'"));

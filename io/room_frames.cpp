@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <array>
+#include <cstdint>
+
+#include "io/posed_layouts.h"
+#include "io/text.h"
+#include "libps/core/error.h"
+#include "libps/core/parallel.h"
+#include "libps/core/random.h"
+#include "libps/rooms/shot.h"
+
+namespace ps {
+namespace {
+
+constexpr int kViews = 4;                      ///< of each room
+constexpr std::uint64_t kMostRooms = 1000000;  ///< of one seed, as `train data` numbers them
+constexpr float kMostTurned = 1.047f, kMostMoved = 1;  ///< radians, metres
+
+struct RoomSource {
+  std::uint64_t seed = 0;
+  std::size_t count = 0;
+
+  std::uint64_t room_seed(std::size_t frame) const { return seed * kMostRooms + frame / kViews; }
+};
+
+RoomSource parse(const std::string& data) {
+  const std::string_view text(data);
+  const std::size_t first = text.find(':'), second = text.find(':', first + 1);
+  if (second != std::string_view::npos) {
+    const auto seed = to_number<std::uint64_t>(text.substr(first + 1, second - first - 1));
+    const auto count = to_number<std::uint64_t>(text.substr(second + 1));
+    if (seed && count && *seed<UINT64_MAX / kMostRooms&& * count> 0 &&
+        *count <= kViews * kMostRooms) {
+      return {*seed, static_cast<std::size_t>(*count)};
+    }
+  }
+  throw Error(data, "names no rooms", "rooms:SEED:COUNT, as rooms:7:400, of 1 to 4000000 views");
+}
+
+std::uint64_t key(std::uint64_t room_seed, std::size_t view) {
+  const auto bits = random_bits(room_seed, {static_cast<std::uint32_t>(view), 0, 0x6576616cu, 0});
+  return static_cast<std::uint64_t>(bits[0]) << 32 | bits[1];
+}
+
+rooms::Camera camera_of(const rooms::Room& room, std::uint64_t room_seed, std::size_t view) {
+  const rooms::Camera first = rooms::random_camera(room, key(room_seed, 0));
+  if (view == 0) return first;
+  return rooms::moved(room, first, key(room_seed, view), kMostTurned, kMostMoved);
+}
+
+Intrinsics lens_of(const rooms::Camera& c) { return {c.width, c.height, c.fx, c.fy, c.cx, c.cy}; }
+
+Pose pose_of(const rooms::Camera& camera) {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  for (int i = 0; i < 12; ++i) {
+    matrix(i / 4, i % 4) = camera.world_from_cam[static_cast<std::size_t>(i)];
+  }
+  return checked_pose(matrix, "room camera");
+}
+
+View load(const RoomSource& source, std::size_t i) {
+  const rooms::Room room(source.room_seed(i));
+  const rooms::Camera camera = camera_of(room, source.room_seed(i), i % kViews);
+  rooms::Shot shot = rooms::shoot(room, camera);
+  View view;
+  view.color =
+      Image(shot.height, shot.width, reinterpret_cast<cv::Vec3f*>(shot.color.data())).clone();
+  view.depth = Depth(shot.height, shot.width, shot.depth.data()).clone();
+  view.intrinsics = lens_of(camera);
+  view.world_from_cam = pose_of(camera);
+  return view;
+}
+
+}  // namespace
+
+PosedFrames open_room_frames(const std::string& data) {
+  const RoomSource source = parse(data);
+  PosedFrames frames;
+  frames.layout = "rooms";
+  frames.frames.resize(source.count);
+  parallel_for((source.count + kViews - 1) / kViews, [&](std::size_t r) {
+    const std::uint64_t seed = source.room_seed(r * kViews);
+    const rooms::Room room(seed);
+    for (std::size_t i = r * kViews; i < std::min(source.count, (r + 1) * kViews); ++i) {
+      const rooms::Camera camera = camera_of(room, seed, i % kViews);
+      frames.frames[i] = {"room-" + std::to_string(seed) + "-" + std::to_string(i % kViews),
+                          static_cast<double>(i), static_cast<int>(r), pose_of(camera),
+                          lens_of(camera)};
+    }
+  });
+  frames.load = [source](std::size_t i) { return load(source, i); };
+  return frames;
+}
+
+}  // namespace ps
