@@ -12,19 +12,48 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-void add_view_options(CLI::App& verb, SceneArguments& a) {
-  verb.add_option("--directions", a.directions,
+}  // namespace
+
+void SceneArguments::add_view_options(CLI::App& verb) {
+  verb.add_option("--directions", directions,
                   "Which of left, right, up, down, up-left, up-right, down-left, down-right")
       ->type_name("NAME,...")
       ->delimiter(',')
       ->check(CLI::IsMember(direction_names()));
-  verb.add_option("--range-horizontal", a.range_horizontal,
+  verb.add_option("--range-horizontal", range_horizontal,
                   "How far the camera turns to the left and right: radians, or degrees as 34deg")
       ->type_name("ANGLE");
-  verb.add_option("--range-vertical", a.range_vertical, "The same up and down")->type_name("ANGLE");
-  verb.add_option("--orbit", a.orbit, "Turn about the point so many metres ahead; 0 = on the spot")
+  verb.add_option("--range-vertical", range_vertical, "The same up and down")->type_name("ANGLE");
+  verb.add_option("--orbit", orbit, "Turn about the point so many metres ahead; 0 = on the spot")
       ->type_name("M")
       ->check(in_range(0, 1e6));
+}
+
+void SceneArguments::add_outpaint_options(CLI::App& verb) {
+  verb.add_option("--samples", samples,
+                  "Completions drawn for each outpainted view, the best is kept: 1 to 1000, or "
+                  "auto = until more would not help, 50 at most")
+      ->type_name("N|auto");
+  verb.add_option("--temperature", temperature, "Of the sampling; 0 = always the likeliest code")
+      ->type_name("T")
+      ->check(in_range(0, 2));
+  verb.add_option("--refine-best", refine_best,
+                  "Refine only so many completions, the best by a look at the unrefined; 0 = all")
+      ->type_name("N")
+      ->check(whole_in(0, 1000));
+  verb.add_option("--select", select, "What chooses the best completion")
+      ->type_name("NAME")
+      ->check(CLI::IsMember(selection_names()));
+  verb.add_option(
+          "--weights", weights,
+          "Weights: one file of all networks, or a folder of depth, vqvae, pixelcnn, refine "
+          "and classifier.safetensors (default: those that come with the program)")
+      ->type_name("FILE|DIR");
+}
+
+namespace {
+
+void add_strategy_options(CLI::App& verb, SceneArguments& a) {
   verb.add_option("--support-views", a.support_views,
                   "Trajectory file of further views to outpaint, in the scene's world")
       ->type_name("FILE");
@@ -37,29 +66,7 @@ void add_view_options(CLI::App& verb, SceneArguments& a) {
                   "Views on the way to each extreme, itself included")
       ->type_name("N")
       ->check(whole_in(1, 1000));
-}
-
-void add_outpaint_options(CLI::App& verb, SceneArguments& a) {
   verb.add_flag("--no-outpaint", a.no_outpaint, "Invent nothing: only what the photo shows");
-  verb.add_option("--samples", a.samples,
-                  "Completions drawn for each outpainted view, the best is kept: 1 to 1000, or "
-                  "auto = until more would not help, 50 at most")
-      ->type_name("N|auto");
-  verb.add_option("--temperature", a.temperature, "Of the sampling; 0 = always the likeliest code")
-      ->type_name("T")
-      ->check(in_range(0, 2));
-  verb.add_option("--refine-best", a.refine_best,
-                  "Refine only so many completions, the best by a look at the unrefined; 0 = all")
-      ->type_name("N")
-      ->check(whole_in(0, 1000));
-  verb.add_option("--select", a.select, "What chooses the best completion")
-      ->type_name("NAME")
-      ->check(CLI::IsMember(selection_names()));
-  verb.add_option(
-          "--weights", a.weights,
-          "Weights: one file of all networks, or a folder of depth, vqvae, pixelcnn, refine "
-          "and classifier.safetensors (default: those that come with the program)")
-      ->type_name("FILE|DIR");
 }
 
 void add_picture_options(CLI::App& verb, SceneArguments& a) {
@@ -100,8 +107,9 @@ double parse_angle(const std::string& text, const std::string& option) {
 void SceneArguments::add_to(CLI::App& verb) {
   input.add_to(verb);
   verb.add_option("-o,--output", output, "Folder to write")->required()->type_name("OUT");
-  add_view_options(verb, *this);
-  add_outpaint_options(verb, *this);
+  add_view_options(verb);
+  add_strategy_options(verb, *this);
+  add_outpaint_options(verb);
   add_picture_options(verb, *this);
   verb.add_flag("--resume", resume,
                 "Go on with what an interrupted run of the same command has done");

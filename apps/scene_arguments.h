@@ -37,6 +37,8 @@ struct SceneArguments {
   double frames_per_second = 30;
 
   void add_to(CLI::App& verb);
+  void add_view_options(CLI::App& verb);      ///< directions, ranges, orbit
+  void add_outpaint_options(CLI::App& verb);  ///< sampling, selection, weights
 
   /// Throw CLI::ValidationError (wrong usage) where a text is none of what is allowed.
   PlanOptions plan() const;

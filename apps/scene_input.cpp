@@ -47,20 +47,6 @@ Depth read_depth_for(const std::string& file, double depth_scale, cv::Size photo
   return scaled;
 }
 
-/// Fills the holes of a measured depth with the network's, which is made to continue it.
-/// @return what the report says of it
-Json fill_holes(View& view, const DepthModel& model) {
-  const Mask known = view.depth > 0, unknown = ~known;
-  const int holes = cv::countNonZero(unknown);
-  if (holes == 0) return {{"pixels", 0}};
-  const Depth guess = photo_depth(model.net, view.color, view.intrinsics, model.scale);
-  const AlignedDepth aligned = align_depth(guess, view.depth, known & 1, unknown & 1);
-  aligned.depth.copyTo(view.depth, unknown);
-  Json report = {{"pixels", holes}, {"agreed", aligned.agreed}, {"residual", aligned.residual}};
-  if (!aligned.agreed) report["why"] = aligned.why;
-  return report;
-}
-
 /// Shrunk until no side is above `longest` pixels.
 View shrunk(const View& view, int longest, Json& report) {
   const cv::Size size = view.color.size();
@@ -130,6 +116,18 @@ SceneInput read_frames(const SceneInputArguments& a, const Context& context) {
 }
 
 }  // namespace
+
+Json fill_holes(View& view, const DepthModel& model) {
+  const Mask known = view.depth > 0, unknown = ~known;
+  const int holes = cv::countNonZero(unknown);
+  if (holes == 0) return {{"pixels", 0}};
+  const Depth guess = photo_depth(model.net, view.color, view.intrinsics, model.scale);
+  const AlignedDepth aligned = align_depth(guess, view.depth, known & 1, unknown & 1);
+  aligned.depth.copyTo(view.depth, unknown);
+  Json report = {{"pixels", holes}, {"agreed", aligned.agreed}, {"residual", aligned.residual}};
+  if (!aligned.agreed) report["why"] = aligned.why;
+  return report;
+}
 
 bool SceneInputArguments::is_folder() const {
   std::error_code ignored;

@@ -14,20 +14,25 @@ namespace ps {
 struct ShownView {
   PlannedView plan;
   Image image;
+  SupportReport report;  ///< where it was outpainted
 };
 
+struct ShownScene {
+  SceneBuilder scene;            ///< with all that was accumulated
+  std::vector<ShownView> views;  ///< in the order of the plan
+};
+
+/// How a view is outpainted, where it is not by SceneBuilder::outpaint(): for comparisons.
+using MakeSupport = std::function<SupportView(SceneBuilder&, const Pose&, std::uint16_t number)>;
+
 /// @brief Makes all views of a plan by its strategy (PixelSynth, section 4.3), from one input:
-/// `support` splats and refines the accumulated cloud into each; the others show what was outpainted
-/// in each.
+/// `support` splats and refines the accumulated cloud into each; the others show what was
+/// outpainted in each.
 /// @param plan      of plan_scene() from the input's pose
 /// @param strategy  that the plan was made for
-/// @param make_support  how a view is outpainted; empty = SceneBuilder::outpaint(). Ablations
-/// replace it.
-/// @return views in the order of the plan
-std::vector<ShownView> show_scene(
-    const View& input, const std::vector<PlannedView>& plan, Strategy strategy,
-    const SceneNetworks& networks, const SceneOptions& options,
-    const ViewRendererOptions& renderer,
-    const std::function<SupportView(SceneBuilder&, const Pose&, std::uint16_t)>& make_support = {});
+/// @param make_support  may be empty
+ShownScene show_scene(const View& input, const std::vector<PlannedView>& plan, Strategy strategy,
+                      const SceneNetworks& networks, const SceneOptions& options,
+                      const ViewRendererOptions& renderer, const MakeSupport& make_support = {});
 
 }  // namespace ps

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/frames_arguments.h"
+#include "apps/interrupt.h"
+#include "apps/program.h"
+#include "apps/progress.h"
+#include "apps/scene_arguments.h"
+#include "apps/scene_models.h"
+#include "apps/score_report.h"
+#include "apps/verb_eval.h"
+#include "io/weights_file.h"
+#include "libps/core/error.h"
+#include "libps/eval/consistency.h"
+#include "libps/eval/perceptual.h"
+#include "libps/geometry/point.h"
+#include "libps/models/lpips.h"
+#include "libps/scene/strategies.h"
+
+namespace ps::apps {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+struct EvalConsistencyArguments {
+  FramesArguments frames;
+  SceneArguments scene;  ///< ranges, directions, sampling and weights of it are used
+  std::vector<std::string> methods = {"support", "sequential", "independent"};
+  bool estimate_depth = false;
+  std::string lpips;
+  std::string output;
+};
+
+std::vector<ScoreColumn> columns() {
+  return {{"PSNR", "dB", true},     {"LPIPS", "", false},    {"overlap", "", true},
+          {"seam step", "", false}, {"in front", "", false}, {"depth agreed", "", true},
+          {"seconds", "s", false}};
+}
+
+/// Share of the outpainted points that stand before what the input saw at their pixel.
+double share_in_front(const Cloud& cloud, const View& input) {
+  const Pose cam_from_world = input.world_from_cam.inverse();
+  std::size_t invented = 0, before = 0;
+  for (const Point& point : cloud) {
+    if (static_cast<Origin>(point.origin) != Origin::outpainted) continue;
+    ++invented;
+    const Eigen::Vector3d p = cam_from_world * point.getVector3fMap().cast<double>();
+    if (!(p.z() > 0)) continue;
+    const Eigen::Vector2d at = input.intrinsics.project(p);
+    const double x = std::round(at.x()), y = std::round(at.y());
+    if (!(x >= 0 && y >= 0 && x < input.depth.cols && y < input.depth.rows)) continue;
+    const double seen = input.depth(static_cast<int>(y), static_cast<int>(x));
+    before += seen > 0 && p.z() < 0.99 * seen;
+  }
+  return invented == 0 ? kNaN : static_cast<double>(before) / static_cast<double>(invented);
+}
+
+/// Means over the directions of a shown scene.
+std::vector<double> scores_of(const ShownScene& shown, const Cloud& cloud, const Intrinsics& lens,
+                              const View& input, const PerceptualDistance& perceptual,
+                              double seconds) {
+  std::vector<double> psnr, lpips, overlap, steps, agreed;
+  for (const ShownView& half : shown.views) {
+    const std::size_t number = half.plan.name.find("_1");
+    if (half.report.best >= 0) {
+      if (!std::isnan(half.report.seam_step)) steps.push_back(half.report.seam_step);
+      agreed.push_back(half.report.agreed ? 1 : 0);
+    }
+    if (number == std::string::npos) continue;
+    for (const ShownView& full : shown.views) {
+      if (full.plan.name != half.plan.name.substr(0, number)) continue;
+      const ConsistencyScore score =
+          consistency({half.image, {}, lens, half.plan.world_from_cam},
+                      {full.image, {}, lens, full.plan.world_from_cam}, perceptual);
+      if (score.overlap == 0) continue;
+      psnr.push_back(score.psnr);
+      lpips.push_back(score.perceptual);
+      overlap.push_back(score.overlap);
+    }
+  }
+  return {mean(psnr),   mean(lpips), mean(overlap), median(steps), share_in_front(cloud, input),
+          mean(agreed), seconds};
+}
+
+ScoreTable measure(const EvalConsistencyArguments& a, const ChosenFrames& frames,
+                   const SceneModels& models, const PerceptualDistance& perceptual,
+                   const Context& context) {
+  ScoreTable table(columns());
+  const SceneOptions options = a.scene.scene(context);
+  PlanOptions plan_options = a.scene.plan();
+  plan_options.views_per_direction = 2;
+  ViewRendererOptions renderer;
+  renderer.seed = context.seed;
+  Progress progress(context, "scenes", frames.chosen.size() * a.methods.size());
+  for (std::size_t i = 0; i < frames.chosen.size(); ++i) {
+    View input = frames.all.load(frames.chosen[i]);
+    if (a.estimate_depth || input.depth.empty()) {
+      input.depth =
+          photo_depth(models.depth().net, input.color, input.intrinsics, models.depth().scale);
+    } else {
+      fill_holes(input, models.depth());
+    }
+    for (const std::string& method : a.methods) {
+      plan_options.strategy = strategy_of(method);
+      const Stopwatch watch;
+      ShownScene shown = show_scene(input, plan_scene(input.world_from_cam, plan_options),
+                                    plan_options.strategy, models.networks(), options, renderer);
+      const double seconds = watch.seconds();
+      table.add(
+          {method, frames.all.frames[frames.chosen[i]].name, frames.groups[i],
+           scores_of(shown, shown.scene.cloud(), shown.scene.lens(), input, perceptual, seconds)});
+      progress.update(table.rows().size());
+    }
+  }
+  return table;
+}
+
+void run_eval_consistency(const EvalConsistencyArguments& a, const CLI::App& verb,
+                          const Context& context) {
+  check_score_files(a.output);
+  note_interrupts();
+  const Stopwatch total;
+  const SceneModels models(a.scene.weights, a.scene.select, context);
+  std::optional<models::Lpips> lpips;
+  PerceptualDistance perceptual;
+  if (!a.lpips.empty()) {
+    lpips.emplace(read_weights(a.lpips));
+    perceptual = lpips_distance(*lpips);
+  }
+  const ChosenFrames frames = choose_posed_frames(a.frames, context);
+  const ScoreTable table = measure(a, frames, models, perceptual, context);
+  BootstrapOptions options;
+  options.seed = context.seed;
+  const ScoreSummary summary = summary_of(table, options);
+  Json report = {{"settings", settings_of(verb, context)},
+                 {"frames", frames_report(a.frames, frames)},
+                 {"methods", to_json(summary)}};
+  add_costs(report, total);
+  if (!a.output.empty()) write_score_files(a.output, report, summary, &table);
+  print_table(context, text_of(summary));
+  end_run(context, report, a.output.empty() ? a.frames.data : a.output,
+          "consistency of " + std::to_string(frames.chosen.size()) + " scenes scored");
+}
+
+}  // namespace
+
+void add_eval_consistency(CLI::App& eval, const Context& context) {
+  auto* verb = eval.add_subcommand(
+      "consistency",
+      "How well views of one scene agree (SPEC 11): each frame becomes a scene, and in each "
+      "direction the view at the extreme is held against the one half way, by homography, both "
+      "ways, on their overlap. Also of each scene: the median relative step of depth across the "
+      "seam of what was outpainted, and the share of outpainted points that stand before what the "
+      "input saw.\n"
+      "Below each mean its 95 % bootstrap interval over rooms, or over twentieths of a walk.");
+  auto a = std::make_shared<EvalConsistencyArguments>();
+  a->frames.add_to(*verb);
+  verb->add_option("--methods", a->methods, "Of support, sequential, independent")
+      ->delimiter(',')
+      ->type_name("NAME,...")
+      ->check(CLI::IsMember({"support", "sequential", "independent"}));
+  a->scene.add_view_options(*verb);
+  a->scene.add_outpaint_options(*verb);
+  verb->add_flag("--estimate-depth", a->estimate_depth, "Look at no true depth of the frames");
+  verb->add_option("--lpips", a->lpips, "Weights of LPIPS, for the perceptual distance")
+      ->type_name("FILE");
+  verb->add_option("-o,--output", a->output,
+                   "F.json; also writes F.csv, the table, and F.samples.csv, every frame")
+      ->type_name("FILE");
+  verb->callback([a, verb, &context] { run_eval_consistency(*a, *verb, context); });
+}
+
+}  // namespace ps::apps
