@@ -71,6 +71,7 @@ int run(int argc, char** argv) {
   add_probe(program, context);
   add_weights(program, context);
   add_train(program, context);
+  add_eval(program, context);
   program.require_subcommand(0, 1);
   try {
     program.parse(argc, argv);

@@ -97,6 +97,13 @@ void print_report(const Context& context, const Json& report) {
   }
 }
 
+void print_text(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    throw Error("stdout", "the table cannot be written");
+  }
+}
+
 double Stopwatch::seconds() const {
   using Seconds = std::chrono::duration<double>;
   const double s = Seconds(std::chrono::steady_clock::now() - start_).count();

@@ -32,6 +32,9 @@ void write_json(const std::filesystem::path& path, const Json& json);
 /// @brief Prints a report on stdout if the user asked for it. Throws ps::Error when that fails.
 void print_report(const Context& context, const Json& report);
 
+/// @brief Prints text on stdout. Throws ps::Error when that fails.
+void print_text(const std::string& text);
+
 /// Seconds since it was made, to the millisecond.
 class Stopwatch {
  public:

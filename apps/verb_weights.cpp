@@ -157,13 +157,6 @@ std::string lines_of(const Metadata& metadata) {
   return text;
 }
 
-void print_text(const std::string& text) {
-  std::fwrite(text.data(), 1, text.size(), stdout);
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    throw Error("stdout", "the table cannot be written");
-  }
-}
-
 void run_info(const WeightsArguments& a, const Context& context) {
   const TensorMap tensors = read_weight_tensors(a.in);
   const Metadata metadata = read_metadata(a.in);

@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <string>
 #include <tuple>
 
@@ -140,6 +141,22 @@ double chamfer_distance(const Cloud& a, const Cloud& b) {
   const Positions second = finite_positions(b);
   if (first.empty() || second.empty()) return std::numeric_limits<double>::quiet_NaN();
   return (mean_distance(first, second) + mean_distance(second, first)) / 2;
+}
+
+std::vector<double> nearest_distances(const Cloud& from, const Cloud& to) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::vector<double> metres(from.size(), std::numeric_limits<double>::quiet_NaN());
+  const Positions theirs = finite_positions(to);
+  const std::optional<NearestPoint> nearest =
+      theirs.empty() ? std::nullopt : std::make_optional<NearestPoint>(theirs);
+  parallel_chunks(from.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Point& p = from[i];
+      if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) continue;
+      metres[i] = nearest ? (*nearest)({p.x, p.y, p.z}, kInfinity) : kInfinity;
+    }
+  });
+  return metres;
 }
 
 }  // namespace ps

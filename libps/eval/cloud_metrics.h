@@ -27,4 +27,8 @@ std::vector<CloudScore> cloud_scores(const Cloud& cloud, const Cloud& truth,
 /// number of threads.
 double chamfer_distance(const Cloud& a, const Cloud& b);
 
+/// @return for each point of `from`, metres to the nearest point of `to`, exactly: NaN for a point
+/// that is not finite, infinite when `to` has no finite point. Runs on all threads.
+std::vector<double> nearest_distances(const Cloud& from, const Cloud& to);
+
 }  // namespace ps

@@ -14,9 +14,10 @@
 namespace ps {
 namespace {
 
-void check_size(const cv::Size& size, const cv::Size& expected, const char* what) {
+void check_size(const char* where, const cv::Size& size, const cv::Size& expected,
+                const char* what) {
   if (size == expected) return;
-  throw Error("depth_errors",
+  throw Error(where,
               std::string(what) + " has " + std::to_string(size.width) + "x" +
                   std::to_string(size.height) + " pixels",
               std::to_string(expected.width) + "x" + std::to_string(expected.height));
@@ -35,8 +36,8 @@ DepthErrors no_errors() {
 }  // namespace
 
 DepthErrors depth_errors(const Depth& depth, const Depth& truth, const Mask& where) {
-  check_size(truth.size(), depth.size(), "the true depth");
-  if (!where.empty()) check_size(where.size(), depth.size(), "the mask");
+  check_size("depth_errors", truth.size(), depth.size(), "the true depth");
+  if (!where.empty()) check_size("depth_errors", where.size(), depth.size(), "the mask");
 
   DepthErrors errors;
   std::vector<double> relative;
@@ -67,6 +68,20 @@ DepthErrors depth_errors(const Depth& depth, const Depth& truth, const Mask& whe
   for (double& share : errors.delta) share /= count;
   errors.median_rel = median(std::move(relative));
   return errors;
+}
+
+Depth median_scaled(const Depth& depth, const Depth& truth) {
+  check_size("median_scaled", truth.size(), depth.size(), "the true depth");
+  std::vector<double> ours, theirs;
+  for (int y = 0; y < depth.rows; ++y) {
+    for (int x = 0; x < depth.cols; ++x) {
+      if (!known(depth(y, x)) || !known(truth(y, x))) continue;
+      ours.push_back(depth(y, x));
+      theirs.push_back(truth(y, x));
+    }
+  }
+  if (ours.empty()) return depth.clone();
+  return depth * (median(std::move(theirs)) / median(std::move(ours)));
 }
 
 }  // namespace ps

@@ -23,4 +23,9 @@ struct DepthErrors {
 /// @param where  only where this is not 0; empty = everywhere. Throws ps::Error when sizes differ.
 DepthErrors depth_errors(const Depth& depth, const Depth& truth, const Mask& where = {});
 
+/// @return the depth times the ratio of the true median to its own, both over the pixels where both
+/// are known (Zhou et al., SfMLearner, CVPR 2017): what is left is the error in proportions. The
+/// depth itself where there is no such pixel. Throws ps::Error when sizes differ.
+Depth median_scaled(const Depth& depth, const Depth& truth);
+
 }  // namespace ps

@@ -110,6 +110,7 @@ void write_photos(const fs::path& dir) {
   write_depth(dir / "square.png", view.depth(cv::Rect(0, 0, kHeight, kHeight)).clone());
   write_depth(dir / "tiny.png", Depth(1, 1, 2.0f));
   write_depth(dir / "zero.png", Depth::zeros(kHeight, kWidth));
+  write_depth(dir / "flat.png", Depth(kHeight, kWidth, 2.5f));
   write_intrinsics(dir / "lens.json", view.intrinsics);
   write_intrinsics(dir / "square_lens.json", intrinsics_from_fov(64, 64, 60));
 }
@@ -199,6 +200,29 @@ void write_weights(const fs::path& dir) {
                  "\x80\2M\xe9\3.\x80\2}.\x80\2cos\nsystem\nU\x09touch ran\x85R.");
 }
 
+/// Two frames of the walk as TUM RGB-D has them, and as RealEstate10K.
+void write_data_sets(const fs::path& dir) {
+  fs::create_directories(dir / "tum");
+  fs::create_directories(dir / "estate" / "frames");
+  std::string list = "https://pixelsynth.invalid/clip\n", colors, depths, poses;
+  for (const int i : {1, 2}) {
+    const View view = view_from(pose_of(3));
+    const std::string stamp = std::to_string(i);
+    const cv::Rect part(8, 2, 80, 60);  // 4:3, as the sensor's
+    write_image(dir / "tum" / ("c" + stamp + ".png"), view.color(part).clone());
+    write_image(dir / "estate" / "frames" / (stamp + ".png"), view.color);
+    write_depth(dir / "tum" / ("d" + stamp + ".png"), view.depth(part).clone(), 5000);
+    colors += stamp + " c" + stamp + ".png\n";
+    depths += stamp + ".01 d" + stamp + ".png\n";
+    poses += stamp + ".005 0 0 0 0 0 0 1\n";
+    list += stamp + " 0.7 1.05 0.5 0.5 0 0 1 0 0 0 0 1 0 0 0 0 1 0\n";
+  }
+  write_text(dir / "tum" / "rgb.txt", colors);
+  write_text(dir / "tum" / "depth.txt", depths);
+  write_text(dir / "tum" / "groundtruth.txt", poses);
+  write_text(dir / "estate" / "clip.txt", list);
+}
+
 /// A depth network by chance, as trained to this and that scale.
 void write_depth_networks(const fs::path& dir) {
   TensorMap tensors;
@@ -251,6 +275,7 @@ int main(int argc, char** argv) try {
   ps::write_walk(dir / "walk", 0, 7);
   ps::write_walk(dir / "part_a", 0, 4);
   ps::write_walk(dir / "part_b", 4, 7);
+  ps::write_data_sets(dir);
   ps::write_photos(dir);
   ps::write_odd_photos(dir);
   ps::write_clouds(dir);

@@ -123,5 +123,24 @@ TEST(DepthErrors, differing_sizes_throw) {
   EXPECT_THROW(depth_errors(Depth(2, 3, 1.f), Depth(2, 3, 1.f), Mask::ones(3, 2)), Error);
 }
 
+TEST(MedianScaled, takes_a_common_factor_away_and_nothing_else) {
+  const Depth truth = random_depth(37, 23, 1);
+  const Depth tripled = truth * 3;
+  EXPECT_LT(depth_errors(median_scaled(tripled, truth), truth).abs_rel, 1e-6);
+  const Depth other = random_depth(37, 23, 2);
+  const Depth scaled = median_scaled(other, truth);
+  for (int i = 1; i < 37 * 23; ++i) {
+    EXPECT_FLOAT_EQ(scaled(i / 37, i % 37) * other(0, 0), other(i / 37, i % 37) * scaled(0, 0));
+  }
+}
+
+TEST(MedianScaled, looks_at_pixels_that_both_know) {
+  const Depth depth = (Depth(1, 5) << 2, 4, 6, 0, 100), truth = (Depth(1, 5) << 1, 2, 3, 9, kNan);
+  EXPECT_FLOAT_EQ(median_scaled(depth, truth)(0, 4), 50);
+  const Depth none = Depth::zeros(1, 5);
+  EXPECT_EQ(median_scaled(depth, none)(0, 4), 100);
+  EXPECT_THROW(median_scaled(depth, Depth(5, 1)), Error);
+}
+
 }  // namespace
 }  // namespace ps

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/score_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "apps/output.h"
+#include "io/atomic_file.h"
+#include "libps/core/error.h"
+
+namespace ps::apps {
+namespace {
+
+constexpr std::size_t kLineWidth = 100, kMostColumns = 5;  ///< of a block of the terminal's table
+
+std::string formatted(const char* format, double value) {
+  if (std::isnan(value)) return "-";
+  char text[40];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+/// Shortest that reads back the same; empty for NaN.
+std::string csv_number(double value) {
+  if (std::isnan(value)) return "";
+  char text[40];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+/// In quotes where it needs them (RFC 4180).
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string title_of(const ScoreColumn& column) {
+  return column.unit.empty() ? column.name : column.name + ", " + column.unit;
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+  return text.size() < width ? text + std::string(width - text.size(), ' ') : text;
+}
+
+void append_line(std::string& text, std::string line) {
+  line.erase(line.find_last_not_of(' ') + 1);
+  text += line + "\n";
+}
+
+/// One column of the terminal's table: its title, then for each row the figure and the interval.
+struct TextColumn {
+  std::string title;
+  std::vector<std::string> values, intervals;
+  std::size_t width = 0;
+};
+
+TextColumn text_column(const ScoreSummary& summary, std::size_t c) {
+  TextColumn column;
+  column.title = title_of(summary.columns[c]);
+  column.width = column.title.size();
+  for (const std::vector<Interval>& row : summary.cells) {
+    const Interval& cell = row[c];
+    column.values.push_back(formatted("%.4g", cell.value));
+    column.intervals.push_back(std::isnan(cell.low) ? ""
+                                                    : formatted("%.3g", cell.low) + ".." +
+                                                          formatted("%.3g", cell.high));
+    column.width =
+        std::max({column.width, column.values.back().size(), column.intervals.back().size()});
+  }
+  column.width += 2;
+  return column;
+}
+
+std::string text_of_columns(const ScoreSummary& summary, const std::vector<TextColumn>& columns,
+                            std::size_t first_width) {
+  std::string text, line = padded(summary.corner, first_width);
+  for (const TextColumn& column : columns) line += padded(column.title, column.width);
+  append_line(text, line);
+  for (std::size_t r = 0; r < summary.rows.size(); ++r) {
+    std::string values = padded(summary.rows[r], first_width), intervals(first_width, ' ');
+    for (const TextColumn& column : columns) {
+      values += padded(column.values[r], column.width);
+      intervals += padded(column.intervals[r], column.width);
+    }
+    append_line(text, values);
+    append_line(text, intervals);
+  }
+  return text;
+}
+
+/// JSON knows neither NaN nor infinity.
+Json number(double value) {
+  if (std::isnan(value)) return nullptr;
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  return value;
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+  AtomicFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+std::filesystem::path summary_file(const std::string& output) { return beside(output, "csv"); }
+std::filesystem::path samples_file(const std::string& output) {
+  return beside(output, "samples.csv");
+}
+
+}  // namespace
+
+ScoreSummary summary_of(const ScoreTable& table, const BootstrapOptions& options) {
+  ScoreSummary summary = {"method", table.methods(), table.columns(), {}};
+  for (const std::string& method : table.methods()) {
+    std::vector<Interval> row;
+    for (std::size_t c = 0; c < table.columns().size(); ++c) {
+      row.push_back(table.mean(method, c, options));
+    }
+    summary.cells.push_back(std::move(row));
+  }
+  return summary;
+}
+
+std::string text_of(const ScoreSummary& summary) {
+  std::size_t first_width = summary.corner.size();
+  for (const std::string& row : summary.rows) first_width = std::max(first_width, row.size());
+  first_width += 2;
+  std::string text;
+  std::vector<TextColumn> columns;
+  std::size_t width = first_width;
+  for (std::size_t c = 0; c < summary.columns.size(); ++c) {
+    TextColumn column = text_column(summary, c);
+    const bool wide = width + column.width > kLineWidth || columns.size() == kMostColumns;
+    if (!columns.empty() && wide) {
+      text += text_of_columns(summary, columns, first_width) + "\n";
+      columns.clear();
+      width = first_width;
+    }
+    width += column.width;
+    columns.push_back(std::move(column));
+  }
+  return text + text_of_columns(summary, columns, first_width);
+}
+
+Json to_json(const ScoreSummary& summary) {
+  Json json = Json::object();
+  for (std::size_t r = 0; r < summary.rows.size(); ++r) {
+    Json& row = json[summary.rows[r]] = Json::object();
+    for (std::size_t c = 0; c < summary.columns.size(); ++c) {
+      const Interval& cell = summary.cells[r][c];
+      row[title_of(summary.columns[c])] = {{"value", number(cell.value)},
+                                           {"low", number(cell.low)},
+                                           {"high", number(cell.high)},
+                                           {"samples", cell.samples}};
+    }
+  }
+  return json;
+}
+
+std::string to_csv(const ScoreSummary& summary) {
+  std::string text = csv_text(summary.corner) + ",score,value,low,high,samples\n";
+  for (std::size_t r = 0; r < summary.rows.size(); ++r) {
+    for (std::size_t c = 0; c < summary.columns.size(); ++c) {
+      const Interval& cell = summary.cells[r][c];
+      text += csv_text(summary.rows[r]) + "," + csv_text(title_of(summary.columns[c])) + "," +
+              csv_number(cell.value) + "," + csv_number(cell.low) + "," + csv_number(cell.high) +
+              "," + std::to_string(cell.samples) + "\n";
+    }
+  }
+  return text;
+}
+
+std::string to_csv(const ScoreTable& table) {
+  std::string text = "method,sample,group";
+  for (const ScoreColumn& column : table.columns()) text += "," + csv_text(title_of(column));
+  text += "\n";
+  for (const ScoreRow& row : table.rows()) {
+    text += csv_text(row.method) + "," + csv_text(row.sample) + "," + std::to_string(row.group);
+    for (const double value : row.values) text += "," + csv_number(value);
+    text += "\n";
+  }
+  return text;
+}
+
+void check_score_files(const std::string& output,
+                       const std::vector<std::filesystem::path>& inputs) {
+  if (output.empty()) return;
+  check_output_file(output, {".json"});
+  for (const std::filesystem::path& file :
+       {std::filesystem::path(output), summary_file(output), samples_file(output)}) {
+    check_output_file(file, {});
+    check_not_input(file, inputs);
+  }
+}
+
+void write_score_files(const std::string& output, const Json& report, const ScoreSummary& summary,
+                       const ScoreTable* table) {
+  write_text(summary_file(output), to_csv(summary));
+  if (table != nullptr) write_text(samples_file(output), to_csv(*table));
+  write_json(output, report);
+}
+
+void print_table(const Context& context, const std::string& text) {
+  if (!context.json) print_text(text);
+}
+
+}  // namespace ps::apps

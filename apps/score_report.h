@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/context.h"
+#include "apps/report.h"
+#include "libps/eval/score_table.h"
+
+namespace ps::apps {
+
+/// @brief What scores come to: a row for each method (or threshold), a column for each score.
+struct ScoreSummary {
+  std::string corner;  ///< what the rows are: "method"
+  std::vector<std::string> rows;
+  std::vector<ScoreColumn> columns;
+  std::vector<std::vector<Interval>> cells;  ///< by row, then column
+};
+
+ScoreSummary summary_of(const ScoreTable& table, const BootstrapOptions& options);
+
+/// @return lines for a terminal: each figure, and below it its interval
+std::string text_of(const ScoreSummary& summary);
+
+/// @return {ROW: {COLUMN: {value, low, high, samples}}}; what is no number is null, what is
+/// infinite "inf"
+Json to_json(const ScoreSummary& summary);
+
+/// @return a line for each cell: ROW, score, value, low, high, samples
+std::string to_csv(const ScoreSummary& summary);
+
+/// @return a line for each row of the table: method, sample, group and all scores
+std::string to_csv(const ScoreTable& table);
+
+/// @brief Fails before the work: throws ps::Error unless FILE.json, FILE.csv and FILE.samples.csv
+/// can be written and are none of the inputs. An empty path is none.
+void check_score_files(const std::string& output,
+                       const std::vector<std::filesystem::path>& inputs = {});
+
+/// @brief Writes the report as FILE.json, the summary as FILE.csv and, where there is one, the
+/// whole table as FILE.samples.csv, each whole or not at all. Throws ps::Error.
+void write_score_files(const std::string& output, const Json& report, const ScoreSummary& summary,
+                       const ScoreTable* table = nullptr);
+
+/// @brief Prints text on stdout, unless the report goes there (--json). Throws ps::Error when that
+/// fails.
+void print_table(const Context& context, const std::string& text);
+
+}  // namespace ps::apps

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/output.h"
+#include "apps/program.h"
+#include "apps/score_report.h"
+#include "apps/verb_eval.h"
+#include "io/cloud_file.h"
+#include "libps/core/error.h"
+#include "libps/eval/cloud_intervals.h"
+
+namespace ps::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct EvalCloudArguments {
+  std::string cloud, truth;
+  std::vector<double> thresholds = {0.01, 0.02, 0.05};
+  double block = 0.5;
+  std::string output;
+};
+
+ScoreSummary summary_of(const std::string& cloud, const CloudIntervals& found) {
+  ScoreSummary summary = {"cloud", {cloud}, {}, {{}}};
+  const auto add = [&](const std::string& name, const char* unit, bool higher, const Interval& i) {
+    summary.columns.push_back({name, unit, higher});
+    summary.cells.front().push_back(i);
+  };
+  for (const CloudScoreInterval& score : found.scores) {
+    char at[32];
+    std::snprintf(at, sizeof at, " %g m", score.threshold);
+    add(std::string("accuracy") + at, "", true, score.accuracy);
+    add(std::string("completeness") + at, "", true, score.completeness);
+    add(std::string("F-score") + at, "", true, score.f_score);
+  }
+  add("chamfer", "m", false, found.chamfer);
+  return summary;
+}
+
+Cloud read_points(const std::string& path) {
+  Cloud cloud = read_cloud(path);
+  if (cloud.empty()) throw Error(path, "holds no point", "a cloud with points");
+  return cloud;
+}
+
+void run_eval_cloud(const EvalCloudArguments& a, const CLI::App& verb, const Context& context) {
+  check_score_files(a.output, {a.cloud, a.truth});
+  const Stopwatch total;
+  const Cloud cloud = read_points(a.cloud), truth = read_points(a.truth);
+  BootstrapOptions options;
+  options.seed = context.seed;
+  const CloudIntervals found = cloud_intervals(cloud, truth, a.thresholds, a.block, options);
+  const ScoreSummary summary = summary_of(fs::path(a.cloud).filename().string(), found);
+  Json report = {{"settings", settings_of(verb, context)},
+                 {"points", cloud.size()},
+                 {"true_points", truth.size()},
+                 {"clouds", to_json(summary)}};
+  add_costs(report, total);
+  if (!a.output.empty()) write_score_files(a.output, report, summary);
+  print_table(context, text_of(summary));
+  end_run(context, report, a.output.empty() ? a.cloud : a.output,
+          std::to_string(cloud.size()) + " points scored against " + std::to_string(truth.size()));
+}
+
+}  // namespace
+
+void add_eval_cloud(CLI::App& eval, const Context& context) {
+  auto* verb = eval.add_subcommand(
+      "cloud",
+      "Scores a cloud against a true one: accuracy (share of its points nearer than a threshold to "
+      "a true point), completeness (the other way round), F-score (their harmonic mean), and the "
+      "chamfer distance (mean of the two mean nearest distances).\n"
+      "Below each figure its 95 % bootstrap interval over blocks of space.");
+  auto a = std::make_shared<EvalCloudArguments>();
+  verb->add_option("cloud", a->cloud, "PLY or PCD to score")->required()->type_name("CLOUD");
+  verb->add_option("truth", a->truth, "PLY or PCD that is true, in the same world")
+      ->required()
+      ->type_name("TRUTH");
+  verb->add_option("--thresholds", a->thresholds, "Metres, as 0.01,0.02,0.05")
+      ->delimiter(',')
+      ->type_name("M,...")
+      ->check(in_range(1e-9, kNoBound));
+  verb->add_option("--block", a->block, "Side of the blocks that are drawn for intervals, metres")
+      ->type_name("M")
+      ->check(in_range(1e-6, kNoBound));
+  verb->add_option("-o,--output", a->output, "F.json; also writes F.csv, the table")
+      ->type_name("FILE");
+  verb->callback([a, verb, &context] { run_eval_cloud(*a, *verb, context); });
+}
+
+}  // namespace ps::apps
