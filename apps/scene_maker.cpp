@@ -79,7 +79,7 @@ void SceneMaker::observe() {
   report_["seconds"]["observe"] = watch.seconds();
 }
 
-SupportView SceneMaker::outpaint(const PlannedView& view, std::uint16_t number) {
+SupportView SceneMaker::outpaint(const ViewPlan& view, std::uint16_t number) {
   SupportView support;
   Json report;
   if (work_->load(number, support, report)) {

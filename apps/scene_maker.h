@@ -27,7 +27,7 @@ class SceneMaker {
 
   const SceneInput& input() const { return input_; }
   const Cloud& cloud() const { return cloud_; }
-  const std::vector<PlannedView>& plan() const { return plan_; }
+  const std::vector<ViewPlan>& plan() const { return plan_; }
   /// Null where nothing is outpainted.
   const SceneModels* models() const { return models_.get(); }
   /// Pictures of views that are shown as they were outpainted (strategies other than support), in
@@ -42,7 +42,7 @@ class SceneMaker {
   void make_plan();
   void observe();
   void outpaint_all();
-  SupportView outpaint(const PlannedView& view, std::uint16_t number);
+  SupportView outpaint(const ViewPlan& view, std::uint16_t number);
 
   const SceneArguments& a_;
   const Context& context_;
@@ -52,7 +52,7 @@ class SceneMaker {
   std::unique_ptr<SceneModels> models_;
   std::unique_ptr<DepthModel> depth_;  ///< where nothing is outpainted
   SceneInput input_;
-  std::vector<PlannedView> plan_;
+  std::vector<ViewPlan> plan_;
   std::unique_ptr<SceneWork> work_;
   std::unique_ptr<SceneBuilder> builder_;
   std::unique_ptr<SceneBuilder> apart_;  ///< what was observed alone, for independent views

@@ -55,7 +55,7 @@ std::vector<Picture> render_views(const SceneMaker& scene, const Intrinsics& len
   std::vector<Picture> pictures;
   Progress progress(context, "views", scene.plan().size());
   for (std::size_t i = 0; i < scene.plan().size(); ++i) {
-    const PlannedView& view = scene.plan()[i];
+    const ViewPlan& view = scene.plan()[i];
     Picture picture = {view.name, view.world_from_cam, {}, {{"view", view.name}}};
     const Stopwatch watch;
     const RenderedView seen = renderer.render(scene.cloud(), lens, view.world_from_cam);

@@ -37,7 +37,7 @@ Strategy strategy_of(const std::string& name) {
               "support, sequential or independent");
 }
 
-std::vector<PlannedView> plan_scene(const Pose& input, const PlanOptions& options) {
+std::vector<ViewPlan> plan_scene(const Pose& input, const PlanOptions& options) {
   check(options);
   const int steps = options.views_per_direction;
   PathOptions path = options.range;
@@ -46,7 +46,7 @@ std::vector<PlannedView> plan_scene(const Pose& input, const PlanOptions& option
   for (const std::string& direction : options.directions) {
     poses.push_back(camera_path(direction, input, path));
   }
-  std::vector<PlannedView> views = {{"input", input, false}};
+  std::vector<ViewPlan> views = {{"input", input, false}};
   for (int step = 1; step <= steps; ++step) {
     for (std::size_t d = 0; d < poses.size(); ++d) {
       const bool extreme = step == steps;

@@ -16,7 +16,7 @@ enum class Strategy {
 };
 
 /// A view that a scene shows.
-struct PlannedView {
+struct ViewPlan {
   std::string name;  ///< "left" at the extreme of a direction, "left_1" on the way to it
   Pose world_from_cam = Pose::Identity();
   bool outpaint = false;  ///< whether it is outpainted; else the cloud is splatted into it
@@ -37,6 +37,6 @@ Strategy strategy_of(const std::string& name);
 /// for `sequential` the nearest of all directions before the next ones.
 /// Throws ps::Error when a direction is none of direction_names() or given twice,
 /// views_per_direction is not 1 to 1000, or a range is unsound (camera_path()).
-std::vector<PlannedView> plan_scene(const Pose& input, const PlanOptions& options = {});
+std::vector<ViewPlan> plan_scene(const Pose& input, const PlanOptions& options = {});
 
 }  // namespace ps

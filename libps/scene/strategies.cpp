@@ -5,7 +5,7 @@
 
 namespace ps {
 
-ShownScene show_scene(const View& input, const std::vector<PlannedView>& plan, Strategy strategy,
+ShownScene show_scene(const View& input, const std::vector<ViewPlan>& plan, Strategy strategy,
                       const SceneNetworks& networks, const SceneOptions& options,
                       const ViewRendererOptions& renderer_options,
                       const MakeSupport& make_support) {

@@ -12,7 +12,7 @@ namespace ps {
 
 /// A picture that a strategy makes of a planned view, through the networks' lens.
 struct ShownView {
-  PlannedView plan;
+  ViewPlan plan;
   Image image;
   SupportReport report;  ///< where it was outpainted
 };
@@ -31,7 +31,7 @@ using MakeSupport = std::function<SupportView(SceneBuilder&, const Pose&, std::u
 /// @param plan      of plan_scene() from the input's pose
 /// @param strategy  that the plan was made for
 /// @param make_support  may be empty
-ShownScene show_scene(const View& input, const std::vector<PlannedView>& plan, Strategy strategy,
+ShownScene show_scene(const View& input, const std::vector<ViewPlan>& plan, Strategy strategy,
                       const SceneNetworks& networks, const SceneOptions& options,
                       const ViewRendererOptions& renderer, const MakeSupport& make_support = {});
 

@@ -14,9 +14,9 @@ double angle_between(const Pose& a, const Pose& b) {
   return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
 }
 
-std::vector<std::string> names_of(const std::vector<PlannedView>& views, bool outpainted_alone) {
+std::vector<std::string> names_of(const std::vector<ViewPlan>& views, bool outpainted_alone) {
   std::vector<std::string> names;
-  for (const PlannedView& view : views) {
+  for (const ViewPlan& view : views) {
     if (view.outpaint || !outpainted_alone) names.push_back(view.name);
   }
   return names;
@@ -31,7 +31,7 @@ TEST(ScenePlan, support_outpaints_the_extremes_alone) {
 }
 
 TEST(ScenePlan, extremes_are_those_of_the_paper) {
-  for (const PlannedView& view : plan_scene(Pose::Identity())) {
+  for (const ViewPlan& view : plan_scene(Pose::Identity())) {
     const double angle = angle_between(Pose::Identity(), view.world_from_cam);
     if (view.name == "left" || view.name == "right") {
       EXPECT_NEAR(angle, 0.6, 1e-9);
@@ -65,7 +65,7 @@ TEST(ScenePlan, views_turn_about_a_point_ahead_when_asked_to) {
   PlanOptions options;
   options.range.orbit_radius = 2;
   const Eigen::Vector3d ahead(0, 0, 2);
-  for (const PlannedView& view : plan_scene(Pose::Identity(), options)) {
+  for (const ViewPlan& view : plan_scene(Pose::Identity(), options)) {
     EXPECT_LT((view.world_from_cam * ahead - ahead).norm(), 1e-9) << view.name;
   }
 }
