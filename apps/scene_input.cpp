@@ -14,8 +14,10 @@
 #include "io/depth_file.h"
 #include "io/photo.h"
 #include "io/rgbd_folder.h"
+#include "io/trajectory.h"
 #include "libps/core/error.h"
 #include "libps/geometry/depth_alignment.h"
+#include "libps/geometry/relative_pose.h"
 #include "libps/scene/camera_path.h"
 
 namespace fs = std::filesystem;
@@ -115,6 +117,31 @@ SceneInput read_frames(const SceneInputArguments& a, const Context& context) {
   return input;
 }
 
+/// The second photo, placed where it was taken, its depth on the first one's scale.
+void add_second(const SceneInputArguments& a, const View& first, const DepthModel* model,
+                int longest, const Context& context, SceneInput& input) {
+  Json report;
+  View second = read_one(a, a.second, a.second_depth, model, context, report);
+  if (a.second_pose == "auto") {
+    const SecondPose found = find_second_pose(first, second.color, second.intrinsics, second.depth);
+    second.world_from_cam = found.world_from_cam;
+    second.depth *= found.depth_scale;
+    report["pose"] = {{"from", "auto"},
+                      {"matches", found.matches},
+                      {"inliers", found.inliers},
+                      {"reprojection_error", found.reprojection_error},
+                      {"depth_error", found.depth_error},
+                      {"depth_scale", found.depth_scale},
+                      {"depth_spread", found.depth_spread}};
+  } else {
+    const StampedPose given = read_trajectory(a.second_pose).front();
+    second.world_from_cam = first.world_from_cam * given.world_from_cam;
+    report["pose"] = {{"from", a.second_pose}};
+  }
+  input.views.push_back(shrunk(second, longest, report));
+  input.report["second"] = report;
+}
+
 }  // namespace
 
 Json fill_holes(View& view, const DepthModel& model) {
@@ -157,6 +184,16 @@ void SceneInputArguments::add_to(CLI::App& verb) {
       ->type_name("S")
       ->check(in_range(1e-6, kNoBound));
   lens.add_to(verb);
+  verb.add_option("--second", second, "Another photo of the place, by the same lens")
+      ->type_name("PHOTO2");
+  verb.add_option("--second-depth", second_depth, "The second photo's depth (default: estimated)")
+      ->type_name("FILE");
+  verb.add_option(
+          "--second-pose", second_pose,
+          "Where the second photo was taken, seen from the first's camera (x right, y down, "
+          "z forward, metres): a trajectory file, whose first pose counts, or auto = found "
+          "by what both show")
+      ->type_name("FILE|auto");
   verb.add_option("--frames", frames, "Of a folder: timestamps A:B, both included")
       ->type_name("A:B");
   verb.add_option("--every", every, "Of a folder: only every N-th frame")
@@ -169,11 +206,14 @@ SceneInput read_scene_input(const SceneInputArguments& a, const DepthModel* mode
                             const Context& context) {
   if (a.is_folder()) {
     if (!a.depth.empty()) throw CLI::ValidationError("--depth", "a folder brings its own depth");
+    if (!a.second.empty())
+      throw CLI::ValidationError("--second", "goes with a photo, not a folder");
     return read_frames(a, context);
   }
   SceneInput input;
   const View photo = read_one(a, a.photo, a.depth, model, context, input.report);
   input.views.push_back(shrunk(photo, longest, input.report));
+  if (!a.second.empty()) add_second(a, photo, model, longest, context, input);
   return input;
 }
 

@@ -23,7 +23,9 @@ struct SceneInputArguments {
   LensArguments lens;
   std::string frames;  ///< of a folder
   int every = 1;
-  std::string second, second_depth, second_pose = "auto";
+  std::string second;        ///< another photo of the place; empty = none
+  std::string second_depth;  ///< its depth; empty = estimated
+  std::string second_pose = "auto";
   LiftOptions lift;
 
   void add_to(CLI::App& verb);
