@@ -70,6 +70,11 @@ void add_strategy_options(CLI::App& verb, SceneArguments& a) {
 }
 
 void add_picture_options(CLI::App& verb, SceneArguments& a) {
+  verb.add_option("--budget", a.budget,
+                  "How many points stay: auto = no more than the views and videos can show, none = "
+                  "all, points=N, or psnr=DB between the views of the thinned and the whole cloud "
+                  "(default: auto, with --no-outpaint none)")
+      ->type_name("BUDGET");
   verb.add_option("--view-size", a.view_size,
                   "Long side of the pictures, at most, pixels; of a photo of more than twice that, "
                   "what half a "
@@ -123,6 +128,25 @@ PlanOptions SceneArguments::plan() const {
   options.range.range_horizontal = parse_angle(range_horizontal, "--range-horizontal");
   options.range.range_vertical = parse_angle(range_vertical, "--range-vertical");
   options.range.orbit_radius = orbit;
+  return options;
+}
+
+std::optional<BudgetOptions> SceneArguments::point_budget() const {
+  BudgetOptions options;
+  if (budget == "none" || (budget.empty() && no_outpaint)) return std::nullopt;
+  if (budget.empty() || budget == "auto") return options;
+  const auto equals = budget.find('=');
+  const std::string what = budget.substr(0, equals);
+  char* end = nullptr;
+  const double value =
+      equals == std::string::npos ? 0 : std::strtod(budget.c_str() + equals + 1, &end);
+  const bool sound = end != nullptr && *end == '\0' && value >= 1 && value <= kNoBound;
+  if (!sound || (what != "points" && what != "psnr")) {
+    throw CLI::ValidationError("--budget",
+                               "'" + budget + "'; expected none, auto, points=N or psnr=DB");
+  }
+  if (what == "points") options.points = static_cast<std::size_t>(value);
+  if (what == "psnr") options.psnr = value;
   return options;
 }
 

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/scene_input.h"
+#include "libps/scene/budget.h"
 #include "libps/scene/scene_builder.h"
 #include "libps/scene/scene_plan.h"
 
@@ -31,6 +33,7 @@ struct SceneArguments {
   int refine_best = 0;
   std::string select = "both";
 
+  std::string budget;  ///< none, auto, points=N or psnr=DB; empty = auto where it outpaints
   int view_size = 1024;
   std::vector<std::string> paths;
   int path_frames = 64;
@@ -43,6 +46,7 @@ struct SceneArguments {
   /// Throw CLI::ValidationError (wrong usage) where a text is none of what is allowed.
   PlanOptions plan() const;
   SceneOptions scene(const Context& context) const;
+  std::optional<BudgetOptions> point_budget() const;  ///< none = all points are kept
 };
 
 /// @return radians of `0.6`, `0.6rad` or `34deg`; throws CLI::ValidationError naming the option

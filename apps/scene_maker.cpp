@@ -30,6 +30,7 @@ SceneMaker::SceneMaker(const SceneArguments& arguments, const Json& settings,
       settings_(settings),
       plan_options_(arguments.plan()),
       options_(arguments.scene(context)) {
+  a_.point_budget();  // fails before the work
   check_depth_range(a_.input.lift);
   options_.outpaint.progress = [this](double done) {
     bar_->update(done_ * kSteps + static_cast<std::size_t>(std::lround(done * kSteps)));
@@ -142,6 +143,23 @@ void SceneMaker::make() {
   } catch (const Interrupted&) {
     throw Interrupted(kGoOn);
   }
+}
+
+void SceneMaker::keep_to_budget(const std::vector<PlannedView>& views) {
+  const std::optional<BudgetOptions> options = a_.point_budget();
+  if (!options) return;
+  const Stopwatch watch;
+  BudgetReport done;
+  const std::size_t before = cloud_.size();
+  cloud_ = thinned(cloud_, views, *options, &done);
+  Json& report = report_["budget"] = {
+      {"views", views.size()}, {"points_before", before},        {"points", done.points},
+      {"merged", done.merged}, {"seen_by_no_view", done.unseen}, {"tolerance", done.tolerance},
+      {"pixels", done.pixels}};
+  const bool targeted = options->points > 0 || options->psnr > 0;
+  if (targeted) report["psnr"] = std::isfinite(done.psnr) ? Json(done.psnr) : Json("inf");
+  report_["seconds"]["budget"] = watch.seconds();
+  throw_if_interrupted();
 }
 
 void SceneMaker::finish() {

@@ -22,6 +22,8 @@ class SceneMaker {
   /// @brief Makes the cloud. Throws ps::Error, and Interrupted: what was outpainted until then is
   /// kept for --resume.
   void make();
+  /// @brief Thins the cloud to what these views need, by --budget.
+  void keep_to_budget(const std::vector<PlannedView>& views);
   /// The scene is complete and in its place: what --resume would need is removed.
   void finish();
 

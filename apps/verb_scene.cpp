@@ -116,6 +116,17 @@ std::vector<Pose> poses_of_path(const SceneArguments& a, const SceneMaker& scene
   return poses;
 }
 
+/// All cameras that the scene is looked at through.
+std::vector<PlannedView> planned_views(const SceneArguments& a, const SceneMaker& scene,
+                                       const Intrinsics& lens) {
+  std::vector<PlannedView> views;
+  for (const ViewPlan& view : scene.plan()) views.push_back({lens, view.world_from_cam});
+  for (const std::string& path : a.paths) {
+    for (const Pose& pose : poses_of_path(a, scene, path)) views.push_back({lens, pose});
+  }
+  return views;
+}
+
 Json write_path(const SceneArguments& a, const SceneMaker& scene, const std::string& path,
                 const Intrinsics& lens, ViewRenderer& renderer, OutputFolder& folder,
                 const Context& context) {
@@ -170,6 +181,7 @@ void run_scene(const SceneArguments& a, const CLI::App& verb, const Context& con
   constexpr int kNetworks = 256;  // pixels of a short side that networks see
   const Intrinsics lens = lens_of_pictures(scene.input().views.front().intrinsics, a.view_size,
                                            scene.models() != nullptr ? kNetworks : 1);
+  scene.keep_to_budget(planned_views(a, scene, lens));
   ViewRenderer renderer = renderer_of(scene, context);
   Stopwatch watch;
   const std::vector<Picture> pictures = render_views(scene, lens, renderer, context);

@@ -36,7 +36,7 @@ sanitized() {
   local readers=("$root"/tests/fuzz/fuzz_*.cpp)
   readers=("${readers[@]##*/}")
   build asan
-  suite "address, undefined" asan
+  suite "address, undefined" asan -LE networks
   export TSAN_OPTIONS=suppressions=$root/tests/tsan.supp
   build tsan core_test geometry_test nn_test models_test outpaint_test scene_test
   suite threads tsan -E '_NOT_BUILT|^Apps|^Install'

@@ -84,6 +84,21 @@ app_test(scene_of_odd_depths [=[
     is "$(json outpainted $d/report.json)" -gt 1000
   done
   grep -A3 '"filled"' holes/report.json | grep -q pixels]=])
+app_test(scene_keeps_to_a_budget [=[
+  args="$S/photo.png --depth $S/depth.png --fov 70 --samples 1 --directions left"
+  works scene $args -o all --budget none
+  works scene $args -o some --budget points=20000
+  works scene $args -o auto
+  all=$(json points all/report.json) some=$(json points some/report.json) auto=$(json points auto/report.json)
+  is $all -gt 100000
+  is $some -le 21000
+  is $some -gt 15000
+  is $auto -lt $((all / 2))
+  works scene $args -o near --budget psnr=35
+  is "$(json points near/report.json)" -lt $all
+  for b in few points=0 psnr=x points=; do
+    fails 2 "'$b'; expected none, auto, points=N or psnr=DB" scene $args -o t --budget $b
+  done]=])
 app_test(scene_refuses_what_it_cannot_do [=[
   fails 2 "'35grad' is no angle.*34deg" scene $S/photo.png -o a --range-horizontal 35grad
   fails 2 "'0'; expected 1 to 1000, or auto" scene $S/photo.png -o a --samples 0
