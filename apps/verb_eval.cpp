@@ -10,6 +10,7 @@ void add_eval(CLI::App& program, const Context& context) {
   eval->require_subcommand(1);
   add_eval_depth(*eval, context);
   add_eval_cloud(*eval, context);
+  add_eval_ab(*eval, context);
 }
 
 }  // namespace ps::apps
