@@ -35,6 +35,13 @@ Json value_of(const CLI::Option& option) {
   return values;
 }
 
+/// "eval depth"
+std::string full_name(const CLI::App& verb) {
+  const CLI::App* group = verb.get_parent();
+  const bool nested = group != nullptr && group->get_parent() != nullptr;
+  return (nested ? group->get_name() + " " : "") + verb.get_name();
+}
+
 /// The most memory this process has held so far.
 double peak_memory_mib() {
   rusage usage = {};
@@ -48,7 +55,7 @@ Json settings_of(const CLI::App& verb, const Context& context) {
   Json settings;
   settings["program"] = "pixelsynth";
   settings["version"] = PS_VERSION;
-  settings["verb"] = verb.get_name();
+  settings["verb"] = full_name(verb);
   settings["seed"] = context.seed;
   settings["threads"] = threads();
   Json& options = settings["options"] = Json::object();

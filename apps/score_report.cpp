@@ -12,7 +12,7 @@
 namespace ps::apps {
 namespace {
 
-constexpr std::size_t kLineWidth = 100, kMostColumns = 5;  ///< of a block of the terminal's table
+constexpr std::size_t kLineWidth = 100;
 
 std::string formatted(const char* format, double value) {
   if (std::isnan(value)) return "-";
@@ -123,7 +123,7 @@ ScoreSummary summary_of(const ScoreTable& table, const BootstrapOptions& options
   return summary;
 }
 
-std::string text_of(const ScoreSummary& summary) {
+std::string text_of(const ScoreSummary& summary, std::size_t most_columns) {
   std::size_t first_width = summary.corner.size();
   for (const std::string& row : summary.rows) first_width = std::max(first_width, row.size());
   first_width += 2;
@@ -132,7 +132,7 @@ std::string text_of(const ScoreSummary& summary) {
   std::size_t width = first_width;
   for (std::size_t c = 0; c < summary.columns.size(); ++c) {
     TextColumn column = text_column(summary, c);
-    const bool wide = width + column.width > kLineWidth || columns.size() == kMostColumns;
+    const bool wide = width + column.width > kLineWidth || columns.size() == most_columns;
     if (!columns.empty() && wide) {
       text += text_of_columns(summary, columns, first_width) + "\n";
       columns.clear();

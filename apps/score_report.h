@@ -22,7 +22,8 @@ struct ScoreSummary {
 ScoreSummary summary_of(const ScoreTable& table, const BootstrapOptions& options);
 
 /// @return lines for a terminal: each figure, and below it its interval
-std::string text_of(const ScoreSummary& summary);
+/// @param most_columns  side by side
+std::string text_of(const ScoreSummary& summary, std::size_t most_columns = 5);
 
 /// @return {ROW: {COLUMN: {value, low, high, samples}}}; what is no number is null, what is
 /// infinite "inf"

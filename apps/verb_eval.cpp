@@ -11,6 +11,7 @@ void add_eval(CLI::App& program, const Context& context) {
   add_eval_depth(*eval, context);
   add_eval_consistency(*eval, context);
   add_eval_cloud(*eval, context);
+  add_eval_ab(*eval, context);
 }
 
 }  // namespace ps::apps

@@ -61,7 +61,7 @@ void run_eval_cloud(const EvalCloudArguments& a, const CLI::App& verb, const Con
                  {"clouds", to_json(summary)}};
   add_costs(report, total);
   if (!a.output.empty()) write_score_files(a.output, report, summary);
-  print_table(context, text_of(summary));
+  print_table(context, text_of(summary, 3));
   end_run(context, report, a.output.empty() ? a.cloud : a.output,
           std::to_string(cloud.size()) + " points scored against " + std::to_string(truth.size()));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Internal to the io room: folders of images, and images that must fit each other.
+// Folders of images, and images that must fit each other.
 #pragma once
 
 #include <filesystem>

@@ -223,6 +223,22 @@ void write_data_sets(const fs::path& dir) {
   write_text(dir / "estate" / "clip.txt", list);
 }
 
+/// Pictures of two methods: red ones and green ones, striped.
+void write_methods(const fs::path& dir) {
+  for (const char* method : {"red", "green"}) {
+    fs::create_directories(dir / method);
+    for (int i = 0; i < 6; ++i) {
+      Image picture(48, 64);
+      for (int k = 0; k < 48 * 64; ++k) {
+        const float level = 0.5f + 0.1f * static_cast<float>(k % 64 / 16 + i) / 9;
+        const bool red = method[0] == 'r';
+        picture(k / 64, k % 64) = {red ? level : 0.1f, red ? 0.1f : level, 0.1f};
+      }
+      write_image(dir / method / ("p" + std::to_string(i) + ".png"), picture);
+    }
+  }
+}
+
 /// A depth network by chance, as trained to this and that scale.
 void write_depth_networks(const fs::path& dir) {
   TensorMap tensors;
@@ -276,6 +292,7 @@ int main(int argc, char** argv) try {
   ps::write_walk(dir / "part_a", 0, 4);
   ps::write_walk(dir / "part_b", 4, 7);
   ps::write_data_sets(dir);
+  ps::write_methods(dir);
   ps::write_photos(dir);
   ps::write_odd_photos(dir);
   ps::write_clouds(dir);

@@ -14,6 +14,7 @@ app_test(eval_depth_scores_a_folder_and_writes_table_report_and_samples [=[
   done
   grep -q '^ours,"RMSE, m",[0-9.e+-]*,[0-9.e+-]*,[0-9.e+-]*,7$' e.csv
   grep -q '"layout": "RGB-D folder"' e.json
+  grep -q '"verb": "eval depth"' e.json
   grep -q '"seed": 0' e.json]=])
 app_test(eval_depth_of_true_depths_by_a_constant_scene_is_right_for_the_constant [=[
   cp -r $S/walk w
@@ -70,7 +71,7 @@ app_test(eval_cloud_scores_a_cloud_against_itself_as_all_right [=[
   writes e.json e.csv
   is "$(ls | wc -l)" -eq 2
   prints '^cloud +accuracy 0.01 m +completeness 0.01 m +F-score 0.01 m'
-  prints '^mixed.ply +1 +1 +1 '
+  prints '^mixed.ply +1 +1 +1$'
   grep -q '^mixed.ply,"chamfer, m",0,0,0,' e.csv
   says '^e.json: [0-9]+ points scored against [0-9]+ in ']=])
 app_test(eval_cloud_takes_thresholds_and_knows_which_is_the_truth [=[
@@ -92,3 +93,69 @@ app_test(eval_cloud_refuses_empty_clouds_and_never_replaces_what_it_reads [=[
   fails 1 'photo.png' eval cloud $S/photo.png a.ply
   ln -s a.ply b.csv
   fails 1 'b.csv: is .*, which is read' eval cloud a.ply $S/mixed.ply -o b.json]=])
+
+app_test(eval_ab_writes_one_page_that_needs_nothing_else [=[
+  works eval ab $S/red $S/green -o page.html
+  says '^page.html: 14 questions about 6 pairs in '
+  is "$(ls | wc -l)" -eq 1
+  head -n 1 page.html | grep -q '^<!doctype html>'
+  is "$(grep -Eoc '(src|href)=.?(http|//|file)' page.html)" -eq 0
+  is "$(grep -o 'data:image/jpeg;base64' page.html | wc -l)" -eq 14
+  works eval ab $S/red $S/green -o lossless.html --lossless --inputs $S/green --pairs 4 --sentinels 3
+  says '11 questions about 4 pairs'
+  is "$(grep -o 'data:image/png;base64' lossless.html | wc -l)" -eq 11]=])
+app_test(eval_ab_depends_on_the_seed_alone [=[
+  works --seed 1 --threads 1 eval ab $S/red $S/green -o a.html
+  works --seed 1 --threads 3 eval ab $S/red $S/green -o b.html
+  works --seed 2 eval ab $S/red $S/green -o c.html
+  cmp a.html b.html
+  ! cmp -s a.html c.html || complain "the seed changes nothing"]=])
+app_test(eval_ab_names_cannot_break_the_page [=[
+  mkdir a b
+  cp $S/red/p0.png 'a/<script>"&.png'
+  cp $S/green/p0.png 'b/<script>"&.png'
+  works eval ab a b -o page.html --question '</script><b>' --names '</script>,<!--'
+  is "$(grep -o '</script>' page.html | wc -l)" -eq 2]=])
+app_test(eval_ab_pairs_equal_names_of_equal_sizes [=[
+  cp -r $S/red a
+  rm a/p0.png a/p1.png
+  cp $S/photo.png a/other.png
+  works eval ab a $S/green -o page.html
+  says 'warning: 3 images are in one folder alone'
+  says 'about 4 pairs'
+  cp $S/photo.png a/p2.png
+  fails 1 'p2.png: is 64x48 pixels.*96x64; expected one size' eval ab a $S/green -o b.html
+  cp a/p3.png a/p2.bmp
+  fails 1 'another image has its name' eval ab a $S/green -o b.html
+  fails 1 'no image has the name' eval ab $S/red $S/tum -o b.html
+  fails 1 'has no image p0' eval ab $S/red $S/green --inputs $S/tum -o b.html
+  fails 1 'absent' eval ab absent $S/green -o b.html
+  fails 1 'ending in .html' eval ab $S/red $S/green -o b.txt
+  fails 2 'names' eval ab $S/red $S/green -o b.html --names one
+  fails 2 'sentinels' eval ab $S/red $S/green -o b.html --sentinels -1]=])
+
+# answered PAGE WAY: a page's result after ab_voter.js has answered all of it, in a browser without a screen.
+set(in_browser "
+  needs chromium
+  answered() {
+    (cat $1; echo '<script>'; cat ${CMAKE_CURRENT_SOURCE_DIR}/ab_voter.js; echo \"vote('$2')</script>\") >$work/answered.html
+    chromium --headless --no-sandbox --disable-gpu --user-data-dir=$work/browser --virtual-time-budget=60000 --dump-dom file://$work/answered.html 2>$work/browser.txt >$work/dom.html
+    sed -n '/<pre id=.result.>{/,/^}/p' $work/dom.html
+  }")
+app_test(eval_ab_result_says_whose_pictures_were_taken "${in_browser}
+  works --seed 3 eval ab $S/red $S/green -o page.html --names ours,theirs
+  answered page.html looks > result
+  for claim in '\"a\": \"ours\"' '\"pairs\": 6' '\"a_wins\": 6' '\"b_wins\": 0' '\"votes_disagree\": 0' '\"a_share\": 1' '\"sentinels\": 2' '\"sentinels_right\": 2' '\"trials\": 14'; do
+    grep -q \"$claim\" result || complain \"the result lacks $claim: $(cat result)\"
+  done
+  works --seed 3 eval ab $S/green $S/red -o page.html
+  answered page.html looks > result
+  grep -q '\"a\": \"green\"' result
+  grep -q '\"b_wins\": 6' result
+  grep -q 'href=.data:application/json' $work/dom.html")
+app_test(eval_ab_counts_no_pair_for_who_always_takes_one_side "${in_browser}
+  works eval ab $S/red $S/green -o page.html --sentinels 0 --inputs $S/green
+  answered page.html left > result
+  for claim in '\"a_wins\": 0' '\"b_wins\": 0' '\"votes_disagree\": 6' '\"a_share\": null' '\"left_chosen\": 12' '\"trials\": 12'; do
+    grep -q \"$claim\" result || complain \"the result lacks $claim: $(cat result)\"
+  done")

@@ -301,10 +301,12 @@ TEST(PosedFrames, of_rooms_are_exact_views_four_to_a_world) {
     EXPECT_EQ(view.world_from_cam.matrix(), frame.world_from_cam.matrix());
     EXPECT_EQ(view.intrinsics.fx, frame.lens.fx);
   }
-  // The poses go with the depths: what one view sees of the room, the other sees there too.
+  // The poses go with the depths: hardly a surface is where the other view looks through.
   const View first = frames.load(0), second = frames.load(1);
   const Visibility found = true_visibility(first, second);
-  EXPECT_GT(cv::countNonZero(found.visible), 0);
+  const Mask contradicted = (1 - found.visible - found.invisible) & (second.depth > 0);
+  EXPECT_GT(cv::mean(found.visible)[0], 0.2);
+  EXPECT_LT(cv::countNonZero(contradicted), 0.02 * 256 * 256);
 }
 
 TEST(PosedFrames, of_rooms_do_not_depend_on_threads_but_on_the_seed) {
