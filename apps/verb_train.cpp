@@ -141,7 +141,7 @@ void add_train(CLI::App& program, const Context& context) {
   const std::map<std::string, std::string> stages = {
       {"classifier", "What kind of room it is, for the entropy signal."},
       {"vqvae", "The autoencoder: pictures as codes and back."},
-      {"depth", "The depth network, on true depth."},
+      {"depth", "The depth network, on true depth or poses."},
       {"refine", "The refinement network and the discriminator; needs --codes."},
       {"pixelcnn", "The autoregressive model of codes; needs --codes."}};
   for (const auto& [name, what] : stages) {
@@ -149,6 +149,14 @@ void add_train(CLI::App& program, const Context& context) {
     auto a = std::make_shared<TrainArguments>();
     a->options.stage = name;
     add_stage_options(*verb, *a);
+    if (name == "depth") {
+      verb->add_option(
+              "--supervision", a->options.supervision,
+              "What it learns from: true depth where it is known, poses (the other view of "
+              "a pair, reprojected), or both")
+          ->type_name("WHAT")
+          ->check(CLI::IsMember({"depth", "poses", "both"}));
+    }
     verb->callback([a, verb, &context] { run_train(*a, *verb, context); });
   }
 }

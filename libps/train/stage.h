@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "libps/train/augmentation.h"
 #include "libps/train/dataset.h"
 #include "libps/train/parameters.h"
 #include "libps/train/train.h"
@@ -28,8 +29,7 @@ class Stage {
 
   virtual StageDefaults defaults() const = 0;
   virtual Augmentation augmentation() const { return {true, true, true}; }
-  /// Whether examples are second views of pairs, with their splats and orders.
-  virtual bool pairs() const { return false; }
+  virtual Wanted wanted() const { return {}; }
 
   /// @brief Told once what it is trained on, for what scores are compared with.
   virtual void look_at(const Dataset&) {}

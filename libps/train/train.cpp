@@ -93,8 +93,13 @@ class Run {
         progress_(progress),
         device_(device_of(options.device)),
         stage_(maker_of(options.stage)(options, device_)),
+        wanted_(stage_->wanted()),
         train_(options.train),
         shares_(shares_of(train_, options.frames_share)) {
+    if (wanted_.partners && !train_.posed()) {
+      throw Error(options.train.string(), "no pair's pose is known",
+                  "examples with poses, which `train data` writes now");
+    }
     if (!options.test.empty()) test_.emplace(options.test);
     const StageDefaults defaults = stage_->defaults();
     if (options_.batch == 0) options_.batch = defaults.batch;
@@ -147,8 +152,8 @@ class Run {
   void one() {
     const Clock::time_point start = Clock::now();
     torch::Generator generator = generator_of(options_.seed, step_);
-    Batch batch = train_.batch(train_.draw(options_.batch, shares_, stage_->pairs(), generator),
-                               stage_->pairs(), device_);
+    Batch batch = train_.batch(train_.draw(options_.batch, shares_, wanted_.splats, generator),
+                               wanted_, device_);
     augment(batch, stage_->augmentation(), generator);
     means_.add(
         stage_->step(batch, generator, rate_at(step_, options_.steps, options_.learning_rate)));
@@ -175,20 +180,20 @@ class Run {
 
   Values scores_of(std::size_t group, std::vector<std::vector<Tensor>>& pictures) {
     constexpr std::size_t kShown = 6, kAtOnce = 16;
-    const auto chosen = test_->spread(group, options_.test_count, stage_->pairs());
+    const auto chosen = test_->spread(group, options_.test_count, wanted_.splats);
     Values sums;
     for (std::size_t i = 0; i < chosen.size(); i += kAtOnce) {
       const std::size_t end = std::min(i + kAtOnce, chosen.size());
       const auto count = static_cast<double>(end - i);
       const Batch batch = test_->batch({chosen.begin() + static_cast<std::ptrdiff_t>(i),
                                         chosen.begin() + static_cast<std::ptrdiff_t>(end)},
-                                       stage_->pairs(), device_);
+                                       wanted_, device_);
       for (const auto& [name, value] : stage_->test(batch)) {
         sums[name] += value * count / static_cast<double>(chosen.size());
       }
     }
-    const auto shown = test_->spread(group, kShown, stage_->pairs());
-    for (auto& row : stage_->pictures(test_->batch(shown, stage_->pairs(), device_))) {
+    const auto shown = test_->spread(group, kShown, wanted_.splats);
+    for (auto& row : stage_->pictures(test_->batch(shown, wanted_, device_))) {
       pictures.push_back(std::move(row));
     }
     return sums;
@@ -207,6 +212,7 @@ class Run {
   const TrainProgress& progress_;
   torch::Device device_;
   std::unique_ptr<Stage> stage_;
+  Wanted wanted_;
   Dataset train_;
   std::optional<Dataset> test_;
   std::vector<double> shares_;

@@ -16,7 +16,7 @@ struct TrainOptions {
   std::filesystem::path train;  ///< folder of shards to train on (shard.h)
   std::filesystem::path test;   ///< folder of shards to evaluate on, never trained on; may be empty
   std::filesystem::path out;    ///< folder of the run: checkpoint, log, weights; made when missing
-  std::filesystem::path codes;  ///< weights of a trained VQ-VAE, for pixelcnn and depth-refine
+  std::filesystem::path codes;  ///< weights of a trained VQ-VAE, for pixelcnn and refine
   std::filesystem::path features;  ///< weights of LPIPS, a perceptual loss of refine; may be empty
   std::filesystem::path init;      ///< weights to begin with instead of random ones; may be empty
   int width = 0;                   ///< of the network; 0 = the size that is shipped
@@ -26,6 +26,8 @@ struct TrainOptions {
       0;  ///< stop after so many steps of this call, as if interrupted; 0 = never
   double learning_rate = 0;    ///< 0 = the stage's own
   double frames_share = 0.35;  ///< of examples that come from real frames, where there are any
+  /// What teaches depth: "depth", where it is known; "poses", by reprojection; "both".
+  std::string supervision = "depth";
   std::uint64_t seed = 0;
   std::string device = "cpu";  ///< or "cuda"
   int threads = 0;             ///< 0 = all

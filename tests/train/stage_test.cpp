@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every stage, on two rooms and with networks of a few channels.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include "io/weights_file.h"
-#include "libps/core/error.h"
 #include "libps/models/autoencoder.h"
 #include "libps/models/classifier.h"
 #include "libps/models/depth_net.h"
@@ -18,25 +14,12 @@
 #include "libps/models/refiner.h"
 #include "libps/train/room_examples.h"
 #include "libps/train/train.h"
+#include "tests/train/support.h"
 
 namespace fs = std::filesystem;
 
 namespace ps::train {
 namespace {
-
-std::string bytes_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::string message_of(const TrainOptions& options) {
-  try {
-    train(options, {});
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
 
 class Training : public testing::Test {
  protected:
