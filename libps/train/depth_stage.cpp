@@ -64,7 +64,7 @@ class DepthStage : public Stage {
 
   StageDefaults defaults() const override { return {8, 12000, 1.5e-3}; }
 
-  Wanted wanted() const override { return {false, by_poses_}; }
+  Wanted wanted() const override { return {false, by_poses_, !by_poses_}; }
 
   Values step(const Batch& batch, torch::Generator, double learning_rate) override {
     const Tensor depth = depth_of(net_.forward(batch.color, true));

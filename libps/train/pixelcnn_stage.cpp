@@ -31,7 +31,7 @@ class PixelCnnStage : public Stage {
 
   StageDefaults defaults() const override { return {16, 12000, 1e-3}; }
   Augmentation augmentation() const override { return {true, true, true}; }
-  Wanted wanted() const override { return {true, false}; }
+  Wanted wanted() const override { return {true, false, true}; }
 
   Values step(const Batch& batch, torch::Generator generator, double learning_rate) override {
     const Tensor codes = codes_of(batch);

@@ -48,7 +48,7 @@ class RefineStage : public Stage {
   StageDefaults defaults() const override { return {8, 8000, 5e-4}; }
   // A splat stands beside the picture: nothing may be cropped or flipped by itself.
   Augmentation augmentation() const override { return {false, false, false}; }
-  Wanted wanted() const override { return {true, false}; }
+  Wanted wanted() const override { return {true, false, true}; }
 
   Values step(const Batch& batch, torch::Generator generator, double learning_rate) override {
     const Question question = part_of(question_of(batch), generator);

@@ -18,8 +18,12 @@ namespace ps::train {
 ///
 /// `lens` and `pose` come together or not at all: older shards have neither.
 ///
+/// Shards are named GROUP-NUMBER.safetensors. Group `frames` is real, `rooms` is not; of `posed`,
+/// real too, poses alone are known: depth is 0, flags are kMissing, splat and order say nothing.
+///
 /// Canonical metres are those in which the focal length is s: depth * s / focal in pixels. What a
 /// picture looks like tells no more (Yin and others, Metric3D, ICCV 2023, section 3.1).
+constexpr const char kRooms[] = "rooms", kFrames[] = "frames", kPosed[] = "posed";
 constexpr unsigned char kHit = 1, kMissing = 2, kUnknownKind = 255;
 
 }  // namespace ps::train

@@ -10,6 +10,7 @@
 
 #include "libps/core/error.h"
 #include "libps/train/checkpoint.h"
+#include "libps/train/shard.h"
 #include "libps/train/stage.h"
 
 namespace fs = std::filesystem;
@@ -95,7 +96,7 @@ class Run {
         stage_(maker_of(options.stage)(options, device_)),
         wanted_(stage_->wanted()),
         train_(options.train),
-        shares_(shares_of(train_, options.frames_share)) {
+        shares_(shares_of(train_)) {
     if (wanted_.partners && !train_.posed()) {
       throw Error(options.train.string(), "no pair's pose is known",
                   "examples with poses, which `train data` writes now");
@@ -140,12 +141,29 @@ class Run {
   }
 
  private:
-  static std::vector<double> shares_of(const Dataset& data, double frames_share) {
-    std::vector<double> shares;
-    for (const std::string& group : data.groups()) {
-      shares.push_back(group == "frames" ? frames_share : 1 - frames_share);
+  /// Whether a group has what the stage wants.
+  bool is_of_use(const std::string& group) const { return group != kPosed || !wanted_.depth; }
+
+  /// Groups of one kind share by their sizes.
+  std::vector<double> shares_of(const Dataset& data) const {
+    const auto real = [](const std::string& group) { return group == kFrames || group == kPosed; };
+    double sizes[2] = {0, 0};
+    for (std::size_t g = 0; g < data.groups().size(); ++g) {
+      const std::string& group = data.groups()[g];
+      if (is_of_use(group)) sizes[real(group)] += static_cast<double>(data.size(g));
     }
-    if (shares.size() == 1) shares[0] = 1;
+    if (sizes[0] + sizes[1] == 0) {
+      throw Error(options_.train.string(), "no example's depth is known",
+                  "others, or `train depth --supervision poses`");
+    }
+    const bool both = sizes[0] > 0 && sizes[1] > 0;
+    std::vector<double> shares;
+    for (std::size_t g = 0; g < data.groups().size(); ++g) {
+      const std::string& group = data.groups()[g];
+      const double kind = real(group) ? options_.frames_share : 1 - options_.frames_share;
+      const double part = static_cast<double>(data.size(g)) / sizes[real(group)];
+      shares.push_back(is_of_use(group) ? (both ? kind : 1) * part : 0);
+    }
     return shares;
   }
 
@@ -167,6 +185,7 @@ class Run {
     Values scores;
     std::vector<std::vector<Tensor>> pictures;
     for (std::size_t g = 0; g < test_->groups().size(); ++g) {
+      if (!is_of_use(test_->groups()[g])) continue;
       for (const auto& [name, value] : scores_of(g, pictures)) {
         scores[test_->groups()[g] + "_" + name] = value;
       }
