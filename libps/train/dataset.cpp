@@ -2,6 +2,7 @@
 #include "libps/train/dataset.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "libps/core/error.h"
 #include "libps/train/shard.h"
@@ -35,6 +36,12 @@ Tensor inverted(const Tensor& pose) {
   return torch::cat({back, -(back * pose.select(1, 3)).sum(1, true)}, 1);
 }
 
+/// Radians by which a [12] pose turns.
+double turn_of(const Tensor& pose) {
+  const float* const p = pose.data_ptr<float>();
+  return std::acos(std::clamp((p[0] + p[5] + p[10] - 1) / 2., -1., 1.));
+}
+
 Tensor as_picture(const Tensor& bytes, torch::Device device) {
   // Channels stay last in memory; only the axes are renamed.
   return bytes.to(device).to(torch::kFloat32).div_(127.5).sub_(1).permute({0, 3, 1, 2});
@@ -65,23 +72,55 @@ Dataset::Dataset(const fs::path& folder) {
       throw Error(file.string(), "views of another size", "one size in a folder");
     side_ = side;
     for (std::int64_t row = 0; row < shards_.back().color.size(0); ++row) {
-      members_.back().places.push_back(static_cast<std::int64_t>(places_.size()));
+      const auto place = static_cast<std::int64_t>(places_.size());
+      members_.back().places.push_back(place);
+      if (row % 2 == 1) {
+        members_.back().by_turn.push_back({turn_of(shards_.back().pose[row / 2]), place});
+      }
       places_.push_back({shards_.size() - 1, groups_.size() - 1, row});
     }
   }
+  for (Members& members : members_) {
+    std::stable_sort(members.by_turn.begin(), members.by_turn.end(),
+                     [](const Turned& a, const Turned& b) { return a.turn < b.turn; });
+  }
+}
+
+double Dataset::most_turn() const {
+  double most = 0;
+  for (const Members& members : members_) {
+    if (!members.by_turn.empty()) most = std::max(most, members.by_turn.back().turn);
+  }
+  return most;
+}
+
+/// @param unit  in [0, 1)
+std::int64_t Dataset::Members::pick(double unit, bool targets, double most_turn) const {
+  const auto of = [&](std::int64_t count) {
+    return std::min(static_cast<std::int64_t>(unit * static_cast<double>(count)), count - 1);
+  };
+  if (most_turn == kAnyTurn) {
+    const std::int64_t k = of(size());
+    return places[static_cast<std::size_t>(targets ? k | 1 : k)];
+  }
+  const auto end = std::upper_bound(by_turn.begin(), by_turn.end(), most_turn,
+                                    [](double turn, const Turned& t) { return turn < t.turn; });
+  const std::int64_t pairs = std::max<std::int64_t>(end - by_turn.begin(), 1);
+  if (targets) return by_turn[static_cast<std::size_t>(of(pairs))].second;
+  const std::int64_t k = of(2 * pairs);
+  return by_turn[static_cast<std::size_t>(k / 2)].second - k % 2;
 }
 
 std::vector<std::int64_t> Dataset::draw(std::int64_t count, const std::vector<double>& shares,
-                                        bool targets, torch::Generator generator) const {
+                                        bool targets, torch::Generator generator,
+                                        double most_turn) const {
   const Tensor weights = torch::tensor(shares, torch::kFloat64);
   const Tensor groups = torch::multinomial(weights, count, true, generator);
   const Tensor at = torch::rand({count}, generator, torch::TensorOptions().dtype(torch::kFloat64));
   std::vector<std::int64_t> drawn;
   for (std::int64_t i = 0; i < count; ++i) {
     const Members& members = members_[static_cast<std::size_t>(groups[i].item<std::int64_t>())];
-    auto k = static_cast<std::int64_t>(at[i].item<double>() * static_cast<double>(members.size()));
-    if (targets) k |= 1;
-    drawn.push_back(members.places[static_cast<std::size_t>(std::min(k, members.size() - 1))]);
+    drawn.push_back(members.pick(at[i].item<double>(), targets, most_turn));
   }
   return drawn;
 }

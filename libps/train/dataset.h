@@ -53,8 +53,13 @@ class Dataset {
   /// @brief Draws examples: the group by its share, then any of the group alike.
   /// @param shares    by group, any scale
   /// @param targets   only second views, which have a splat and an order
+  /// @param most_turn radians: only pairs whose views are turned by no more, or the least turned
   std::vector<std::int64_t> draw(std::int64_t count, const std::vector<double>& shares,
-                                 bool targets, torch::Generator generator) const;
+                                 bool targets, torch::Generator generator,
+                                 double most_turn = kAnyTurn) const;
+  static constexpr double kAnyTurn = 1e9;
+  /// @return radians between the views of the pair that is turned most; 0 when no pose is known
+  double most_turn() const;
   /// @return the first `count` of a group, evenly spread over it
   std::vector<std::int64_t> spread(std::size_t group, std::int64_t count, bool targets) const;
 
@@ -79,9 +84,15 @@ class Dataset {
   std::vector<ShardTensors> shards_;
   std::vector<std::string> groups_;
   std::vector<Place> places_;
+  struct Turned {
+    double turn;          ///< radians; 0 when unknown
+    std::int64_t second;  ///< place of the pair's second view; the first is before it
+  };
   struct Members {
     std::vector<std::int64_t> places;
+    std::vector<Turned> by_turn;  ///< its pairs, the least turned first
     std::int64_t size() const { return static_cast<std::int64_t>(places.size()); }
+    std::int64_t pick(double unit, bool targets, double most_turn) const;
   };
   std::vector<Members> members_;
   std::int64_t side_ = 0;

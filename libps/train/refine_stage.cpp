@@ -45,7 +45,7 @@ class RefineStage : public Stage {
     if (!options.features.empty()) lpips_ = std::make_unique<Lpips>(options.features, device);
   }
 
-  StageDefaults defaults() const override { return {8, 8000, 5e-4}; }
+  StageDefaults defaults() const override { return {8, 8000, 5e-4, 5}; }
   // A splat stands beside the picture: nothing may be cropped or flipped by itself.
   Augmentation augmentation() const override { return {false, false, false}; }
   Wanted wanted() const override { return {true, false, true}; }

@@ -21,6 +21,7 @@ struct StageDefaults {
   int batch = 8;
   std::int64_t steps = 10000;
   double learning_rate = 1e-3;
+  int curriculum = 0;  ///< as TrainOptions' own
 };
 
 class Stage {
@@ -55,6 +56,10 @@ class Stage {
 
 /// @return the parameters, moved to the device
 Parameters& on_device(Parameters& parameters, torch::Device device);
+
+/// @brief How far views of a pair may be turned at a step: it grows to `most` in `curriculum` equal
+/// steps, each as long; 0 = any.
+double turn_limit(std::int64_t step, std::int64_t steps, int curriculum, double most);
 
 std::unique_ptr<Stage> make_classifier_stage(const TrainOptions& options, torch::Device device);
 std::unique_ptr<Stage> make_depth_stage(const TrainOptions& options, torch::Device device);

@@ -106,6 +106,7 @@ class Run {
     if (options_.batch == 0) options_.batch = defaults.batch;
     if (options_.steps == 0) options_.steps = defaults.steps;
     if (options_.learning_rate == 0) options_.learning_rate = defaults.learning_rate;
+    if (options_.curriculum < 0) options_.curriculum = defaults.curriculum;
     std::error_code failed;
     fs::create_directories(options_.out, failed);
     if (failed) throw Error(options_.out.string(), failed.message(), "a folder that can be made");
@@ -170,8 +171,10 @@ class Run {
   void one() {
     const Clock::time_point start = Clock::now();
     torch::Generator generator = generator_of(options_.seed, step_);
-    Batch batch = train_.batch(train_.draw(options_.batch, shares_, wanted_.splats, generator),
-                               wanted_, device_);
+    Batch batch = train_.batch(
+        train_.draw(options_.batch, shares_, wanted_.splats, generator,
+                    turn_limit(step_, options_.steps, options_.curriculum, train_.most_turn())),
+        wanted_, device_);
     augment(batch, stage_->augmentation(), generator);
     means_.add(
         stage_->step(batch, generator, rate_at(step_, options_.steps, options_.learning_rate)));
@@ -246,6 +249,12 @@ class Run {
 Parameters& on_device(Parameters& parameters, torch::Device device) {
   parameters.to(device);
   return parameters;
+}
+
+double turn_limit(std::int64_t step, std::int64_t steps, int curriculum, double most) {
+  if (curriculum == 0) return Dataset::kAnyTurn;
+  const auto part = static_cast<double>(step * curriculum / steps + 1);
+  return most * (part / curriculum);
 }
 
 const std::vector<std::string>& stage_names() {

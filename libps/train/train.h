@@ -28,6 +28,9 @@ struct TrainOptions {
   double frames_share = 0.35;  ///< of examples that come from real frames, where there are any
   /// What teaches depth: "depth", where it is known; "poses", by reprojection; "both".
   std::string supervision = "depth";
+  /// Pairs are drawn whose views are turned by no more than a limit, which grows to all in so many
+  /// equal steps over the run (SPEC.md 10); 0 = none; below 0 = the stage's own
+  int curriculum = -1;
   std::uint64_t seed = 0;
   std::string device = "cpu";  ///< or "cuda"
   int threads = 0;             ///< 0 = all
