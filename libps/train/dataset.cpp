@@ -108,7 +108,7 @@ std::int64_t Dataset::Members::pick(double unit, bool targets, double most_turn)
   const std::int64_t pairs = std::max<std::int64_t>(end - by_turn.begin(), 1);
   if (targets) return by_turn[static_cast<std::size_t>(of(pairs))].second;
   const std::int64_t k = of(2 * pairs);
-  return by_turn[static_cast<std::size_t>(k / 2)].second - k % 2;
+  return by_turn[static_cast<std::size_t>(k / 2)].second - 1 + k % 2;
 }
 
 std::vector<std::int64_t> Dataset::draw(std::int64_t count, const std::vector<double>& shares,

@@ -34,7 +34,7 @@ struct Batch {
 
 /// What a stage wants of examples beside color, depth, kind and group.
 struct Wanted {
-  bool splats = false;  ///< examples are second views; with splat, hit, missing, order and unseen
+  bool splats = false;    ///< examples are second views; with splat, hit, missing, order and unseen
   bool partners = false;  ///< with plain, partner, lenses and poses
   bool depth = false;     ///< of no use where depth is unknown
 };

@@ -24,8 +24,10 @@ TensorMap shard_of(const std::vector<float>& turns, bool posed = true) {
     for (const std::size_t side : shape) count *= side;
     return FileTensor::of(std::vector<std::uint8_t>(count, 128), std::move(shape));
   };
-  TensorMap shard = {{"color", bytes({2 * n, 16, 16, 3})}, {"kind", bytes({2 * n})},
-                     {"splat", bytes({n, 16, 16, 3})},     {"flags", bytes({n, 16, 16})}};
+  TensorMap shard = {{"color", bytes({2 * n, 16, 16, 3})},
+                     {"kind", bytes({2 * n})},
+                     {"splat", bytes({n, 16, 16, 3})},
+                     {"flags", bytes({n, 16, 16})}};
   shard["depth"] = {"F16", {2 * n, 16, 16}, std::vector<std::byte>(n * 1024)};
   shard["focal"] = FileTensor::of(std::vector<float>(2 * n, 1), {2 * n});
   std::vector<std::int32_t> order;
