@@ -54,6 +54,12 @@ class Stage {
   virtual std::map<std::string, std::string> metadata() const { return {}; }
 };
 
+/// @return the width that is asked for
+inline int width_of(const TrainOptions& options, int shipped, int published) {
+  if (options.width == kPaperWidth) return published;
+  return options.width > 0 ? options.width : shipped;
+}
+
 /// @return the parameters, moved to the device
 Parameters& on_device(Parameters& parameters, torch::Device device);
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "libps/core/error.h"
+#include "libps/core/parallel.h"
 #include "libps/train/checkpoint.h"
 #include "libps/train/shard.h"
 #include "libps/train/stage.h"
@@ -104,7 +105,10 @@ class Run {
     if (!options.test.empty()) test_.emplace(options.test);
     const StageDefaults defaults = stage_->defaults();
     if (options_.batch == 0) options_.batch = defaults.batch;
-    if (options_.steps == 0) options_.steps = defaults.steps;
+    if (options_.steps == 0) {
+      const double scaled = static_cast<double>(defaults.steps) * options_.steps_scale;
+      options_.steps = std::max<std::int64_t>(std::llround(scaled), 1);
+    }
     if (options_.learning_rate == 0) options_.learning_rate = defaults.learning_rate;
     if (options_.curriculum < 0) options_.curriculum = defaults.curriculum;
     std::error_code failed;
@@ -268,6 +272,7 @@ const std::vector<std::string>& stage_names() {
 
 TrainReport train(const TrainOptions& options, const TrainProgress& progress) {
   if (options.threads > 0) at::set_num_threads(options.threads);
+  set_threads(options.threads);
   return Run(options, progress).go();
 }
 

@@ -10,6 +10,9 @@
 
 namespace ps::train {
 
+/// TrainOptions::width of the published networks (SPEC.md 2).
+constexpr int kPaperWidth = -1;
+
 /// What is trained, on what, for how long.
 struct TrainOptions {
   std::string stage;            ///< one of stage_names()
@@ -19,9 +22,10 @@ struct TrainOptions {
   std::filesystem::path codes;  ///< weights of a trained VQ-VAE, for pixelcnn and refine
   std::filesystem::path features;  ///< weights of LPIPS, a perceptual loss of refine; may be empty
   std::filesystem::path init;      ///< weights to begin with instead of random ones; may be empty
-  int width = 0;                   ///< of the network; 0 = the size that is shipped
+  int width = 0;                   ///< of the network; 0 = the size that is shipped; or kPaperWidth
   int batch = 0;                   ///< examples a step; 0 = the stage's own
   std::int64_t steps = 0;  ///< in all; the learning rate falls to 0 by then; 0 = the stage's own
+  double steps_scale = 1;  ///< of the stage's own steps
   std::int64_t stop_after =
       0;  ///< stop after so many steps of this call, as if interrupted; 0 = never
   double learning_rate = 0;    ///< 0 = the stage's own
