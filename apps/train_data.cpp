@@ -48,6 +48,9 @@ fs::path shard_path(const DataArguments& a, const std::string& group, int number
 template <class Make>
 int write_shards(const DataArguments& a, const std::string& group, int batches, int per_shard,
                  const Context& context, const Make& make) {
+  std::error_code failed;
+  fs::create_directories(a.output, failed);
+  if (failed) throw Error(a.output, failed.message(), "a folder that can be made");
   const int shards = (batches + per_shard - 1) / per_shard;
   Progress progress(context, group, static_cast<std::size_t>(batches));
   int made = 0;
@@ -118,9 +121,6 @@ void run_data(const DataArguments& a, const Context& context) {
   }
   note_interrupts();
   const Stopwatch total;
-  std::error_code failed;
-  fs::create_directories(a.output, failed);
-  if (failed) throw Error(a.output, failed.message(), "a folder that can be made");
   const int made = a.rooms > 0 ? write_rooms(a, context) : write_frames(a, context);
   Json report = {{"output", a.output},
                  {"pairs", made},

@@ -13,7 +13,7 @@ namespace ps::train {
 namespace {
 
 constexpr double kMinZ = 0.25, kMaxZ = 25;  ///< canonical metres
-constexpr int kShippedWidth = 16;
+constexpr int kPublishedWidth = 32, kShippedWidth = 16;
 
 Tensor depth_of(const Tensor& raw) { return kMinZ + (kMaxZ - kMinZ) * torch::sigmoid(raw); }
 
@@ -52,7 +52,7 @@ Tensor masked_median(const Tensor& values, const Tensor& mask) {
 class DepthStage : public Stage {
  public:
   DepthStage(const TrainOptions& options, torch::Device device)
-      : net_(options.width > 0 ? options.width : kShippedWidth, options.seed),
+      : net_(width_of(options, kShippedWidth, kPublishedWidth), options.seed),
         adam_(on_device(net_.parameters, device), {}),
         by_depth_(options.supervision != "poses"),
         by_poses_(options.supervision != "depth") {
