@@ -34,6 +34,7 @@ struct DataArguments {
   std::string rgbd, frames;
   int pairs_per_frame = 8;
   int most_apart = 6;
+  bool poses_only = false;
 };
 
 fs::path shard_path(const DataArguments& a, const std::string& group, int number) {
@@ -47,6 +48,9 @@ fs::path shard_path(const DataArguments& a, const std::string& group, int number
 template <class Make>
 int write_shards(const DataArguments& a, const std::string& group, int batches, int per_shard,
                  const Context& context, const Make& make) {
+  std::error_code failed;
+  fs::create_directories(a.output, failed);
+  if (failed) throw Error(a.output, failed.message(), "a folder that can be made");
   const int shards = (batches + per_shard - 1) / per_shard;
   Progress progress(context, group, static_cast<std::size_t>(batches));
   int made = 0;
@@ -78,14 +82,14 @@ int write_rooms(const DataArguments& a, const Context& context) {
   }
   const rooms::Furniture furniture(models);
   if (!models.empty()) options.furniture = &furniture;
-  return write_shards(a, "rooms", a.rooms, kRoomsPerShard, context, [&](int i) {
+  return write_shards(a, train::kRooms, a.rooms, kRoomsPerShard, context, [&](int i) {
     return train::room_pairs(context.seed * 1000000 + static_cast<std::uint64_t>(i), options,
                              kPairsPerRoom);
   });
 }
 
 int write_frames(const DataArguments& a, const Context& context) {
-  const std::vector<RgbdFolder> folders = {open_rgbd_folder(a.rgbd)};
+  const std::vector<RgbdFolder> folders = {open_rgbd_folder(a.rgbd, nullptr, !a.poses_only)};
   FrameChoice choice;
   if (!a.frames.empty()) parse_frames(a.frames, choice);
   const std::vector<ChosenFrame> used = choose_frames(folders, choice).used;
@@ -94,7 +98,8 @@ int write_frames(const DataArguments& a, const Context& context) {
   const auto load = [&](int i) {
     return load_frame(folders[0], used[static_cast<std::size_t>(i)].frame);
   };
-  return write_shards(a, "frames", count * a.pairs_per_frame, kPairsPerShard, context, [&](int i) {
+  const std::string group = a.poses_only ? train::kPosed : train::kFrames;
+  return write_shards(a, group, count * a.pairs_per_frame, kPairsPerShard, context, [&](int i) {
     const int at = i % count;
     const std::array<std::uint32_t, 4> place = {static_cast<std::uint32_t>(i), 0, 0x66726du, 0};
     // Another frame, before or after it.
@@ -111,11 +116,11 @@ void run_data(const DataArguments& a, const Context& context) {
   if ((a.rooms > 0) == !a.rgbd.empty()) {
     throw CLI::ValidationError("train data", "expected either --rooms or --rgbd");
   }
+  if (a.poses_only && a.rgbd.empty()) {
+    throw CLI::ValidationError("--poses-only", "the depth of rooms is known; expected --rgbd");
+  }
   note_interrupts();
   const Stopwatch total;
-  std::error_code failed;
-  fs::create_directories(a.output, failed);
-  if (failed) throw Error(a.output, failed.message(), "a folder that can be made");
   const int made = a.rooms > 0 ? write_rooms(a, context) : write_frames(a, context);
   Json report = {{"output", a.output},
                  {"pairs", made},
@@ -149,6 +154,9 @@ void add_train_data(CLI::App& train, const Context& context) {
                    "Frames from the first of a pair to the second, at most")
       ->type_name("N")
       ->check(whole_in(1, 1000));
+  verb->add_flag("--poses-only", a->poses_only,
+                 "Of real frames, do not look at depth/, which need not be there: for `train depth "
+                 "--supervision poses|both`");
   verb->callback([a, &context] { run_data(*a, context); });
 }
 

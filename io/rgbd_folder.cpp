@@ -44,7 +44,7 @@ bool has_depth(const Depth& depth) {
 
 }  // namespace
 
-RgbdFolder open_rgbd_folder(const fs::path& path, std::size_t* skipped) {
+RgbdFolder open_rgbd_folder(const fs::path& path, std::size_t* skipped, bool with_depth) {
   return guarded(path.string(), [&] {
     if (!fs::is_directory(path)) {
       throw Error(path.string(), "is no folder",
@@ -57,8 +57,12 @@ RgbdFolder open_rgbd_folder(const fs::path& path, std::size_t* skipped) {
     std::stable_sort(poses.begin(), poses.end(), [](const StampedPose& a, const StampedPose& b) {
       return a.timestamp < b.timestamp;
     });
-    const ImageListing colors(path / "color"), depths(path / "depth");
+    const ImageListing colors(path / "color");
+    const ImageListing depths = with_depth ? ImageListing(path / "depth") : colors;
     folder.frames = matched(poses, colors, depths);
+    if (!with_depth) {
+      for (RgbdFrame& frame : folder.frames) frame.depth.clear();
+    }
     const std::size_t most = std::max({colors.files.size(), depths.files.size(), poses.size()});
     if (folder.frames.empty()) {
       throw Error(path.string(),
@@ -78,6 +82,12 @@ View load_frame(const RgbdFolder& folder, const RgbdFrame& frame, double depth_s
     View view;
     view.world_from_cam = frame.world_from_cam;
     view.color = read_photo(frame.color).color;
+    if (frame.depth.empty()) {
+      view.depth = Depth::zeros(view.color.size());
+      view.intrinsics = intrinsics_for(view.color.size(), folder, frame);
+      if (notes != nullptr) *notes = {false, true};
+      return view;
+    }
     view.depth = read_depth(frame.depth, depth_scale, notes ? NoDepth::allow : NoDepth::refuse);
     FrameNotes found;
     found.without_depth = !has_depth(view.depth);

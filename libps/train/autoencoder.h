@@ -10,8 +10,9 @@ namespace ps::train {
 /// @brief The VQ-VAE in training (SPEC.md 5 and 10; `vqvae.*`; models::Autoencoder runs it).
 class Autoencoder {
  public:
+  /// The published ones, unless said otherwise.
   struct Widths {
-    int channels = 128, residual = 64, embedding = 64, codes = 512;
+    int channels = 128, residual = 32, embedding = 64, codes = 512;
   };
   Autoencoder(const Widths& widths, std::uint64_t seed);
   Parameters parameters;

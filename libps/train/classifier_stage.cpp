@@ -6,12 +6,12 @@
 namespace ps::train {
 namespace {
 
-constexpr int kShippedWidth = 16;
+constexpr int kPublishedWidth = 64, kShippedWidth = 16;
 
 class ClassifierStage : public Stage {
  public:
   ClassifierStage(const TrainOptions& options, torch::Device device)
-      : net_(options.width > 0 ? options.width : kShippedWidth, rooms::kRoomKinds, options.seed),
+      : net_(width_of(options, kShippedWidth, kPublishedWidth), rooms::kRoomKinds, options.seed),
         adam_(on_device(net_.parameters, device), {}) {}
 
   StageDefaults defaults() const override { return {32, 3000, 1e-3}; }

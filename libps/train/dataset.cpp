@@ -2,6 +2,7 @@
 #include "libps/train/dataset.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "libps/core/error.h"
 #include "libps/train/shard.h"
@@ -13,119 +14,40 @@ namespace {
 
 constexpr std::int64_t kCell = 8;
 
-struct Field {
-  const char* name;
-  const char* dtype;
-  torch::ScalarType type;
-};
-
-Tensor field(TensorMap& tensors, const Field& wanted, const std::string& where) {
-  const auto found = tensors.find(wanted.name);
-  if (found == tensors.end())
-    throw Error(where, std::string("there is no ") + wanted.name, "a shard of examples");
-  FileTensor& tensor = found->second;
-  if (tensor.dtype != wanted.dtype) {
-    throw Error(where, std::string(wanted.name) + " is " + tensor.dtype, wanted.dtype);
-  }
-  const std::vector<std::int64_t> shape(tensor.shape.begin(), tensor.shape.end());
-  return torch::from_blob(tensor.bytes.data(), shape, torch::TensorOptions().dtype(wanted.type));
-}
-
-void check_shape(const Tensor& tensor, const std::vector<std::int64_t>& shape, const char* name,
-                 const std::string& where) {
-  if (tensor.sizes() != torch::IntArrayRef(shape)) {
-    throw Error(where, std::string(name) + " is of the wrong shape", "that of color");
-  }
-}
-
 std::string group_of(const fs::path& path) {
   const std::string stem = path.stem().string();
   return stem.substr(0, stem.rfind('-'));
-}
-
-Tensor uniform(std::int64_t n, double low, double high, torch::Generator& generator) {
-  return torch::rand({n}, generator) * (high - low) + low;
 }
 
 /// Rows of several shards, one after another.
 class Gathered {
  public:
   void add(const Tensor& of, std::int64_t row) { rows_.push_back(of[row]); }
+  void add(const Tensor& row) { rows_.push_back(row); }
   Tensor stacked() const { return torch::stack(rows_); }
 
  private:
   std::vector<Tensor> rows_;
 };
 
+/// Of a rigid [3, 4].
+Tensor inverted(const Tensor& pose) {
+  const Tensor back = pose.narrow(1, 0, 3).t();
+  return torch::cat({back, -(back * pose.select(1, 3)).sum(1, true)}, 1);
+}
+
+/// Radians by which a [12] pose turns.
+double turn_of(const Tensor& pose) {
+  const float* const p = pose.data_ptr<float>();
+  return std::acos(std::clamp((p[0] + p[5] + p[10] - 1) / 2., -1., 1.));
+}
+
 Tensor as_picture(const Tensor& bytes, torch::Device device) {
   // Channels stay last in memory; only the axes are renamed.
   return bytes.to(device).to(torch::kFloat32).div_(127.5).sub_(1).permute({0, 3, 1, 2});
 }
 
-void jitter(Tensor& color, torch::Generator& generator) {
-  const std::int64_t n = color.size(0);
-  const auto each = [&](double low, double high) {
-    return uniform(n, low, high, generator).view({n, 1, 1, 1}).to(color.device());
-  };
-  Tensor x = ((color + 1) / 2).clamp(1e-4, 1);
-  x = x.pow(torch::exp(each(-.35, .35))) * torch::exp(each(-.3, .3));
-  const Tensor tint =
-      torch::exp(torch::randn({n, 3, 1, 1}, generator).mul_(.06)).to(color.device());
-  x = x * tint;
-  const Tensor grey = x.mean(1, true);
-  x = grey + (x - grey) * each(.5, 1.4);
-  const Tensor mean = x.mean({1, 2, 3}, true);
-  x = mean + (x - mean) * each(.75, 1.25);
-  color = x.clamp_(0, 1).mul_(2).sub_(1).contiguous(torch::MemoryFormat::ChannelsLast);
-}
-
-void crop_and_mirror(Batch& batch, const Augmentation& how, torch::Generator& generator) {
-  const std::int64_t n = batch.color.size(0);
-  const Tensor share = how.crop ? uniform(n, .6, 1, generator) : torch::ones({n});
-  const Tensor flip = how.mirror ? (torch::rand({n}, generator) < .5).to(torch::kFloat32) * -2 + 1
-                                 : torch::ones({n});
-  const Tensor theta = torch::zeros({n, 2, 3});
-  theta.select(1, 0).select(1, 0).copy_(share * flip);
-  theta.select(1, 1).select(1, 1).copy_(share);
-  theta.select(1, 0).select(1, 2).copy_((1 - share) * uniform(n, -1, 1, generator));
-  theta.select(1, 1).select(1, 2).copy_((1 - share) * uniform(n, -1, 1, generator));
-  const Tensor grid = torch::nn::functional::affine_grid(theta.to(batch.color.device()),
-                                                         batch.color.sizes(), false);
-  batch.color = torch::grid_sampler(batch.color, grid, 0, 2, false)
-                    .contiguous(torch::MemoryFormat::ChannelsLast);
-  if (batch.depth.defined()) {
-    // The crop's focal length is longer by 1 / share, so canonical depth is shorter.
-    batch.depth = torch::grid_sampler(batch.depth, grid, 1, 2, false) *
-                  share.view({n, 1, 1, 1}).to(batch.color.device());
-  }
-}
-
 }  // namespace
-
-Dataset::Shard Dataset::read(const fs::path& path) {
-  const std::string where = path.string();
-  Shard shard;
-  shard.tensors = read_safetensors(path);
-  shard.color = field(shard.tensors, {"color", "U8", torch::kUInt8}, where);
-  if (shard.color.dim() != 4 || shard.color.size(1) != shard.color.size(2)) {
-    throw Error(where, "color is of the wrong shape", "[n, s, s, 3]");
-  }
-  const auto n = shard.color.size(0), s = shard.color.size(1), cells = (s / kCell) * (s / kCell);
-  shard.depth = field(shard.tensors, {"depth", "F16", torch::kFloat16}, where);
-  shard.focal = field(shard.tensors, {"focal", "F32", torch::kFloat32}, where);
-  shard.kind = field(shard.tensors, {"kind", "U8", torch::kUInt8}, where);
-  shard.splat = field(shard.tensors, {"splat", "U8", torch::kUInt8}, where);
-  shard.flags = field(shard.tensors, {"flags", "U8", torch::kUInt8}, where);
-  shard.order = field(shard.tensors, {"order", "I32", torch::kInt32}, where);
-  check_shape(shard.color, {n, s, s, 3}, "color", where);
-  check_shape(shard.depth, {n, s, s}, "depth", where);
-  check_shape(shard.focal, {n}, "focal", where);
-  check_shape(shard.kind, {n}, "kind", where);
-  check_shape(shard.splat, {n / 2, s, s, 3}, "splat", where);
-  check_shape(shard.flags, {n / 2, s, s}, "flags", where);
-  check_shape(shard.order, {n / 2, cells}, "order", where);
-  return shard;
-}
 
 Dataset::Dataset(const fs::path& folder) {
   std::vector<fs::path> files;
@@ -144,29 +66,61 @@ Dataset::Dataset(const fs::path& folder) {
       groups_.push_back(group);
       members_.emplace_back();
     }
-    shards_.push_back(read(file));
+    shards_.push_back(read_shard(file));
     const auto side = shards_.back().color.size(1);
     if (side_ != 0 && side != side_)
       throw Error(file.string(), "views of another size", "one size in a folder");
     side_ = side;
     for (std::int64_t row = 0; row < shards_.back().color.size(0); ++row) {
-      members_.back().places.push_back(static_cast<std::int64_t>(places_.size()));
+      const auto place = static_cast<std::int64_t>(places_.size());
+      members_.back().places.push_back(place);
+      if (row % 2 == 1) {
+        members_.back().by_turn.push_back({turn_of(shards_.back().pose[row / 2]), place});
+      }
       places_.push_back({shards_.size() - 1, groups_.size() - 1, row});
     }
   }
+  for (Members& members : members_) {
+    std::stable_sort(members.by_turn.begin(), members.by_turn.end(),
+                     [](const Turned& a, const Turned& b) { return a.turn < b.turn; });
+  }
+}
+
+double Dataset::most_turn() const {
+  double most = 0;
+  for (const Members& members : members_) {
+    if (!members.by_turn.empty()) most = std::max(most, members.by_turn.back().turn);
+  }
+  return most;
+}
+
+/// @param unit  in [0, 1)
+std::int64_t Dataset::Members::pick(double unit, bool targets, double most_turn) const {
+  const auto of = [&](std::int64_t count) {
+    return std::min(static_cast<std::int64_t>(unit * static_cast<double>(count)), count - 1);
+  };
+  if (most_turn == kAnyTurn) {
+    const std::int64_t k = of(size());
+    return places[static_cast<std::size_t>(targets ? k | 1 : k)];
+  }
+  const auto end = std::upper_bound(by_turn.begin(), by_turn.end(), most_turn,
+                                    [](double turn, const Turned& t) { return turn < t.turn; });
+  const std::int64_t pairs = std::max<std::int64_t>(end - by_turn.begin(), 1);
+  if (targets) return by_turn[static_cast<std::size_t>(of(pairs))].second;
+  const std::int64_t k = of(2 * pairs);
+  return by_turn[static_cast<std::size_t>(k / 2)].second - 1 + k % 2;
 }
 
 std::vector<std::int64_t> Dataset::draw(std::int64_t count, const std::vector<double>& shares,
-                                        bool targets, torch::Generator generator) const {
+                                        bool targets, torch::Generator generator,
+                                        double most_turn) const {
   const Tensor weights = torch::tensor(shares, torch::kFloat64);
   const Tensor groups = torch::multinomial(weights, count, true, generator);
   const Tensor at = torch::rand({count}, generator, torch::TensorOptions().dtype(torch::kFloat64));
   std::vector<std::int64_t> drawn;
   for (std::int64_t i = 0; i < count; ++i) {
     const Members& members = members_[static_cast<std::size_t>(groups[i].item<std::int64_t>())];
-    auto k = static_cast<std::int64_t>(at[i].item<double>() * static_cast<double>(members.size()));
-    if (targets) k |= 1;
-    drawn.push_back(members.places[static_cast<std::size_t>(std::min(k, members.size() - 1))]);
+    drawn.push_back(members.pick(at[i].item<double>(), targets, most_turn));
   }
   return drawn;
 }
@@ -183,21 +137,21 @@ std::vector<std::int64_t> Dataset::spread(std::size_t group, std::int64_t count,
   return chosen;
 }
 
-Batch Dataset::batch(const std::vector<std::int64_t>& indices, bool pairs,
+bool Dataset::posed() const {
+  return std::any_of(shards_.begin(), shards_.end(), [](const auto& s) { return s.posed; });
+}
+
+Batch Dataset::batch(const std::vector<std::int64_t>& indices, const Wanted& wanted,
                      torch::Device device) const {
-  Gathered color, depth, kind, splat, flags, order;
+  Gathered color, depth, kind;
   std::vector<std::int64_t> group;
   for (const std::int64_t index : indices) {
     const Place& place = places_[static_cast<std::size_t>(index)];
-    const Shard& shard = shards_[place.shard];
+    const ShardTensors& shard = shards_[place.shard];
     color.add(shard.color, place.row);
     depth.add(shard.depth, place.row);
     kind.add(shard.kind, place.row);
     group.push_back(static_cast<std::int64_t>(place.group));
-    if (!pairs) continue;
-    splat.add(shard.splat, place.row / 2);
-    flags.add(shard.flags, place.row / 2);
-    order.add(shard.order, place.row / 2);
   }
   Batch batch;
   batch.color = as_picture(color.stacked(), device);
@@ -205,7 +159,21 @@ Batch Dataset::batch(const std::vector<std::int64_t>& indices, bool pairs,
   batch.kind = kind.stacked().to(device).to(torch::kInt64);
   batch.kind.masked_fill_(batch.kind == kUnknownKind, -1);
   batch.group = torch::tensor(group).to(device);
-  if (!pairs) return batch;
+  if (wanted.splats) add_splats(batch, indices, device);
+  if (wanted.partners) add_partners(batch, indices, device);
+  return batch;
+}
+
+void Dataset::add_splats(Batch& batch, const std::vector<std::int64_t>& indices,
+                         torch::Device device) const {
+  Gathered splat, flags, order;
+  for (const std::int64_t index : indices) {
+    const Place& place = places_[static_cast<std::size_t>(index)];
+    const ShardTensors& shard = shards_[place.shard];
+    splat.add(shard.splat, place.row / 2);
+    flags.add(shard.flags, place.row / 2);
+    order.add(shard.order, place.row / 2);
+  }
   const Tensor bits = flags.stacked().to(device).unsqueeze(1);
   batch.splat = as_picture(splat.stacked(), device);
   batch.hit = bits.bitwise_and(kHit).to(torch::kFloat32);
@@ -213,13 +181,29 @@ Batch Dataset::batch(const std::vector<std::int64_t>& indices, bool pairs,
   batch.order = order.stacked().to(device).to(torch::kInt64);
   // A cell is sampled when all of it is missing (SPEC.md 6).
   batch.unseen = (torch::avg_pool2d(batch.missing, kCell) == 1).to(torch::kFloat32).flatten(1);
-  return batch;
 }
 
-void augment(Batch& batch, const Augmentation& how, torch::Generator generator) {
-  const torch::NoGradGuard guard;
-  if (how.crop || how.mirror) crop_and_mirror(batch, how, generator);
-  if (how.jitter) jitter(batch.color, generator);
+void Dataset::add_partners(Batch& batch, const std::vector<std::int64_t>& indices,
+                           torch::Device device) const {
+  Gathered color, lens, partner_lens, pose;
+  std::vector<float> posed;
+  for (const std::int64_t index : indices) {
+    const Place& place = places_[static_cast<std::size_t>(index)];
+    const ShardTensors& shard = shards_[place.shard];
+    const std::int64_t other = place.row ^ 1;
+    color.add(shard.color, other);
+    lens.add(shard.lens, place.row);
+    partner_lens.add(shard.lens, other);
+    const Tensor first_from_second = shard.pose[place.row / 2].view({3, 4});
+    pose.add(place.row < other ? inverted(first_from_second) : first_from_second);
+    posed.push_back(shard.posed ? 1.f : 0.f);
+  }
+  batch.plain = batch.color;
+  batch.partner = as_picture(color.stacked(), device);
+  batch.lens = lens.stacked().to(device);
+  batch.partner_lens = partner_lens.stacked().to(device);
+  batch.partner_from_view = pose.stacked().to(device);
+  batch.posed = torch::tensor(posed).to(device);
 }
 
 }  // namespace ps::train

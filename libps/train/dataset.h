@@ -8,16 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "io/safetensors.h"
+#include "libps/train/shard_tensors.h"
 
 namespace ps::train {
 
-using torch::Tensor;
-
-/// @brief What of an example a stage wants; each tensor's first axis is the batch.
+/// @brief Examples; each tensor's first axis is the batch.
 struct Batch {
   Tensor color;    ///< [n, 3, s, s] RGB in [-1,1]
-  Tensor depth;    ///< [n, 1, s, s] canonical metres (examples.h); 0 = unknown
+  Tensor depth;    ///< [n, 1, s, s] canonical metres (shard.h); 0 = unknown
   Tensor kind;     ///< [n] int64, of room; -1 = unknown
   Tensor splat;    ///< [n, 3, s, s] RGB in [-1,1]: the partner, lifted and splatted into this view
   Tensor hit;      ///< [n, 1, s, s] 1 where a point of the partner falls
@@ -25,16 +23,23 @@ struct Batch {
   Tensor order;    ///< [n, cells] int64: cells from first to last
   Tensor unseen;   ///< [n, cells] 1 = a cell to be sampled
   Tensor group;    ///< [n] int64: index into Dataset::groups()
+
+  Tensor plain;              ///< [n, 3, s, s] color as the camera saw it
+  Tensor partner;            ///< [n, 3, s, s] RGB in [-1,1]: the other view of the pair
+  Tensor lens;               ///< [n, 4] fx (below 0 = mirrored), fy, cx, cy in pixels
+  Tensor partner_lens;       ///< [n, 4]
+  Tensor partner_from_view;  ///< [n, 3, 4] R | t, metres
+  Tensor posed;              ///< [n] 1 = lenses and poses are known
 };
 
-/// @brief How a picture is changed before a network sees it.
-struct Augmentation {
-  bool crop = false;    ///< a random square of it, 60 to 100 % of its side, resized to the whole
-  bool mirror = false;  ///< left for right, half of them
-  bool jitter = false;  ///< brightness, contrast, saturation, hue and gamma
+/// What a stage wants of examples beside color, depth, kind and group.
+struct Wanted {
+  bool splats = false;    ///< examples are second views; with splat, hit, missing, order and unseen
+  bool partners = false;  ///< with plain, partner, lenses and poses
+  bool depth = false;     ///< of no use where depth is unknown
 };
 
-/// @brief Examples of a folder of shards (examples.h): GROUP-NUMBER.safetensors. All are held in
+/// @brief Examples of a folder of shards (shard.h): GROUP-NUMBER.safetensors. All are held in
 /// memory.
 class Dataset {
  public:
@@ -48,37 +53,49 @@ class Dataset {
   /// @brief Draws examples: the group by its share, then any of the group alike.
   /// @param shares    by group, any scale
   /// @param targets   only second views, which have a splat and an order
+  /// @param most_turn radians: only pairs whose views are turned by no more, or the least turned
   std::vector<std::int64_t> draw(std::int64_t count, const std::vector<double>& shares,
-                                 bool targets, torch::Generator generator) const;
+                                 bool targets, torch::Generator generator,
+                                 double most_turn = kAnyTurn) const;
+  static constexpr double kAnyTurn = 1e9;
+  /// @return radians between the views of the pair that is turned most; 0 when no pose is known
+  double most_turn() const;
   /// @return the first `count` of a group, evenly spread over it
   std::vector<std::int64_t> spread(std::size_t group, std::int64_t count, bool targets) const;
 
-  /// @param pairs  also splat, hit, missing, order and unseen; then every index is a second view
-  Batch batch(const std::vector<std::int64_t>& indices, bool pairs, torch::Device device) const;
+  /// @return whether the poses of any pairs are known
+  bool posed() const;
+
+  /// @param wanted  with splats, every index is a second view
+  Batch batch(const std::vector<std::int64_t>& indices, const Wanted& wanted,
+              torch::Device device) const;
 
  private:
-  struct Shard {
-    TensorMap tensors;
-    Tensor color, depth, focal, kind, splat, flags, order;
-  };
   struct Place {
     std::size_t shard, group;
     std::int64_t row;
   };
-  static Shard read(const std::filesystem::path& path);
 
-  std::vector<Shard> shards_;
+  void add_splats(Batch& batch, const std::vector<std::int64_t>& indices,
+                  torch::Device device) const;
+  void add_partners(Batch& batch, const std::vector<std::int64_t>& indices,
+                    torch::Device device) const;
+
+  std::vector<ShardTensors> shards_;
   std::vector<std::string> groups_;
   std::vector<Place> places_;
+  struct Turned {
+    double turn;          ///< radians; 0 when unknown
+    std::int64_t second;  ///< place of the pair's second view; the first is before it
+  };
   struct Members {
     std::vector<std::int64_t> places;
+    std::vector<Turned> by_turn;  ///< its pairs, the least turned first
     std::int64_t size() const { return static_cast<std::int64_t>(places.size()); }
+    std::int64_t pick(double unit, bool targets, double most_turn) const;
   };
   std::vector<Members> members_;
   std::int64_t side_ = 0;
 };
-
-/// @brief Changes color and depth (and nothing else) of a batch, each example by itself.
-void augment(Batch& batch, const Augmentation& how, torch::Generator generator);
 
 }  // namespace ps::train

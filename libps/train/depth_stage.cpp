@@ -4,14 +4,16 @@
 #include <string>
 #include <utility>
 
+#include "libps/core/error.h"
 #include "libps/train/depth_net.h"
+#include "libps/train/reprojection.h"
 #include "libps/train/stage.h"
 
 namespace ps::train {
 namespace {
 
 constexpr double kMinZ = 0.25, kMaxZ = 25;  ///< canonical metres
-constexpr int kShippedWidth = 16;
+constexpr int kPublishedWidth = 32, kShippedWidth = 16;
 
 Tensor depth_of(const Tensor& raw) { return kMinZ + (kMaxZ - kMinZ) * torch::sigmoid(raw); }
 
@@ -50,25 +52,52 @@ Tensor masked_median(const Tensor& values, const Tensor& mask) {
 class DepthStage : public Stage {
  public:
   DepthStage(const TrainOptions& options, torch::Device device)
-      : net_(options.width > 0 ? options.width : kShippedWidth, options.seed),
-        adam_(on_device(net_.parameters, device), {}) {}
+      : net_(width_of(options, kShippedWidth, kPublishedWidth), options.seed),
+        adam_(on_device(net_.parameters, device), {}),
+        by_depth_(options.supervision != "poses"),
+        by_poses_(options.supervision != "depth") {
+    if (by_depth_ && by_poses_ && options.supervision != "both") {
+      throw Error("--supervision", "'" + options.supervision + "' is unknown",
+                  "depth, poses or both");
+    }
+  }
 
   StageDefaults defaults() const override { return {8, 12000, 1.5e-3}; }
 
+  Wanted wanted() const override { return {false, by_poses_, !by_poses_}; }
+
   Values step(const Batch& batch, torch::Generator, double learning_rate) override {
+    const Tensor depth = depth_of(net_.forward(batch.color, true));
+    Values values;
+    Tensor loss = torch::zeros({}, depth.options());
+    if (by_depth_) loss = loss + depth_loss(batch, depth, values);
+    if (by_poses_) {
+      const Tensor reprojection = mean_of_posed(batch, depth);
+      values["reprojection"] = reprojection.item<double>();
+      loss = loss + reprojection;
+    }
+    adam_.zero_gradients();
+    loss.backward();
+    values["skipped"] = adam_.step(learning_rate) ? 0 : 1;
+    return values;
+  }
+
+  /// Beside the true depth, where there is any.
+  static Tensor depth_loss(const Batch& batch, const Tensor& depth, Values& values) {
     const Tensor mask = known(batch.depth);
     const Tensor target = torch::log(batch.depth.clamp(kMinZ, kMaxZ));
-    const Tensor error = (torch::log(depth_of(net_.forward(batch.color, true))) - target) * mask;
+    const Tensor error = (torch::log(depth) - target) * mask;
     // Scale is half a guess: most of a common factor is forgiven.
     const Tensor common = masked_mean(error, mask).view({-1, 1, 1, 1});
     const Tensor value = masked_mean((error - 0.7 * common).abs(), mask).mean();
     const Tensor gradient = gradient_loss(error, mask).mean();
-    adam_.zero_gradients();
-    (value + 0.5 * gradient).backward();
-    const bool taken = adam_.step(learning_rate);
-    return {{"log_l1", value.item<double>()},
-            {"gradient", gradient.item<double>()},
-            {"skipped", taken ? 0 : 1}};
+    values["log_l1"] = value.item<double>();
+    values["gradient"] = gradient.item<double>();
+    return value + 0.5 * gradient;
+  }
+
+  static Tensor mean_of_posed(const Batch& batch, const Tensor& depth) {
+    return reprojection_loss(batch, depth).sum() / batch.posed.sum().clamp_min(1);
   }
 
   void look_at(const Dataset& data) override {
@@ -76,7 +105,7 @@ class DepthStage : public Stage {
     Tensor sum = torch::zeros({1, 1, data.side(), data.side()}), count = sum.clone();
     for (std::size_t group = 0; group < data.groups().size(); ++group) {
       for (const std::int64_t index : data.spread(group, 256, false)) {
-        const Tensor depth = data.batch({index}, false, torch::kCPU).depth;
+        const Tensor depth = data.batch({index}, {}, torch::kCPU).depth;
         sum += torch::log(depth.clamp_min(1e-3)) * known(depth);
         count += known(depth);
       }
@@ -87,13 +116,19 @@ class DepthStage : public Stage {
 
   Values test(const Batch& batch) override {
     const torch::NoGradGuard guard;
-    const Tensor depth = depth_of(net_.forward(batch.color, false));
-    Values values = scores(depth, batch.depth, "");
-    values.merge(scores(torch::ones_like(depth), batch.depth, "_constant"));
+    const Tensor all = depth_of(net_.forward(batch.color, false));
+    Values values;
+    if (by_poses_) values["reprojection"] = mean_of_posed(batch, all).item<double>();
+    // Where nothing is known, there is nothing to be right or wrong about.
+    const Tensor some = (known(batch.depth).sum({1, 2, 3}) > 0).nonzero().view({-1});
+    if (some.numel() == 0) return values;
+    const Tensor depth = all.index_select(0, some), truth = batch.depth.index_select(0, some);
+    values.merge(scores(depth, truth, ""));
+    values.merge(scores(torch::ones_like(depth), truth, "_constant"));
     for (const auto& [map, name] :
          {std::make_pair(ramp_, "_ramp"), std::make_pair(mean_depth_, "_mean")}) {
       if (!map.defined()) continue;
-      values.merge(scores(map.to(depth.device()).expand_as(depth), batch.depth, name));
+      values.merge(scores(map.to(depth.device()).expand_as(depth), truth, name));
     }
     return values;
   }
@@ -116,6 +151,8 @@ class DepthStage : public Stage {
     const torch::NoGradGuard guard;
     const Tensor depth = depth_of(net_.forward(batch.color, false));
     const auto grey = [](const Tensor& z) {
+      if ((z > 0).sum().item<std::int64_t>() == 0)
+        return torch::full_like(z, -1).expand({3, -1, -1});
       const Tensor inverse = z.clamp_min(1e-3).reciprocal();
       const double most =
           torch::quantile(inverse.masked_select(z > 0).slice(0, 0, 100000), .98).item<double>();
@@ -138,6 +175,7 @@ class DepthStage : public Stage {
  private:
   DepthNet net_;
   Adam adam_;
+  bool by_depth_, by_poses_;
   Tensor mean_depth_, ramp_;  ///< of the training data: at each pixel, in each row
 };
 

@@ -38,9 +38,7 @@ cv::Rect random_square(const View& view, std::uint64_t seed, std::uint32_t which
           std::min(at(height - side, unit(2)), height - side), side, side};
 }
 
-ExamplePair::Half half_of(const View& view) {
-  return {view.color, view.depth, std::sqrt(view.intrinsics.fx * view.intrinsics.fy)};
-}
+ExamplePair::Half half_of(const View& view) { return {view.color, view.depth, view.intrinsics}; }
 
 void append_bytes(FileTensor& tensor, const Image& image) {
   for (const cv::Vec3f& pixel : image) {
@@ -53,15 +51,28 @@ void append_raw(FileTensor& tensor, const void* data, std::size_t bytes) {
   tensor.bytes.insert(tensor.bytes.end(), from, from + bytes);
 }
 
+void append_floats(FileTensor& tensor, const std::vector<double>& values) {
+  for (const double value : values) {
+    const float narrow = static_cast<float>(value);
+    append_raw(tensor, &narrow, sizeof narrow);
+  }
+}
+
+void append_pose(FileTensor& tensor, const Pose& pose) {
+  for (int i = 0; i < 12; ++i) append_floats(tensor, {pose.matrix()(i / 4, i % 4)});
+}
+
 void append_half(TensorMap& shard, const ExamplePair::Half& half, unsigned char kind) {
   append_bytes(shard["color"], half.color);
+  const Intrinsics& lens = half.lens;
+  const double focal = std::sqrt(lens.fx * lens.fy);
   cv::Mat canonical;
-  Depth metres = half.depth * (kSide / half.focal);
+  Depth metres = half.depth * (kSide / focal);
   metres.setTo(0, metres > 6e4);  // what a half float cannot hold
   metres.convertTo(canonical, CV_16F);
   append_raw(shard["depth"], canonical.data, canonical.total() * 2);
-  const float focal = static_cast<float>(half.focal / kSide);
-  append_raw(shard["focal"], &focal, sizeof focal);
+  append_floats(shard["focal"], {focal / kSide});
+  append_floats(shard["lens"], {lens.fx, lens.fy, lens.cx, lens.cy});
   append_raw(shard["kind"], &kind, 1);
 }
 
@@ -71,6 +82,7 @@ ExamplePair example_pair(const View& first, const View& second, const View& sour
   ExamplePair pair;
   pair.first = half_of(first);
   pair.second = half_of(second);
+  pair.first_from_second = first.world_from_cam.inverse() * second.world_from_cam;
   SplatOptions options;
   options.background = {.5f, .5f, .5f};
   const Splat seen = splat(lift(source), second.intrinsics, second.world_from_cam, options);
@@ -96,11 +108,14 @@ TensorMap to_shard(const std::vector<ExamplePair>& pairs) {
   shard["splat"] = {"U8", {n, s, s, 3}, {}};
   shard["flags"] = {"U8", {n, s, s}, {}};
   shard["order"] = {"I32", {n, cells}, {}};
+  shard["lens"] = {"F32", {2 * n, 4}, {}};
+  shard["pose"] = {"F32", {n, 12}, {}};
   for (const ExamplePair& pair : pairs) {
     append_half(shard, pair.first, pair.kind);
     append_half(shard, pair.second, pair.kind);
     append_bytes(shard["splat"], pair.splat);
     append_raw(shard["flags"], pair.flags.data, pair.flags.total());
+    append_pose(shard["pose"], pair.first_from_second);
     append_raw(shard["order"], pair.order.data(), cells * sizeof(int));
   }
   return shard;

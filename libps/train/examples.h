@@ -16,10 +16,11 @@ constexpr int kSide = 256;  ///< pixels of an example: what networks see
 struct ExamplePair {
   struct Half {
     Image color;
-    Depth depth;       ///< metres, 0 = unknown
-    double focal = 0;  ///< pixels
+    Depth depth;      ///< metres, 0 = unknown
+    Intrinsics lens;  ///< of kSide x kSide pixels
   };
   Half first, second;
+  Pose first_from_second = Pose::Identity();
   unsigned char kind = kUnknownKind;  ///< of room
   Image splat;             ///< the first, lifted and splatted into the second; behind it 0.5
   cv::Mat1b flags;         ///< kHit and kMissing

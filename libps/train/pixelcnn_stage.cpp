@@ -4,13 +4,15 @@
 
 #include "libps/core/error.h"
 #include "libps/train/autoencoder.h"
+#include "libps/train/completions.h"
 #include "libps/train/pixel_cnn.h"
 #include "libps/train/stage.h"
 
 namespace ps::train {
 namespace {
 
-constexpr int kShippedWidth = 48;
+constexpr int kPublishedWidth = 80, kShippedWidth = 48;
+constexpr int kCompletions = 8;        ///< on a sheet
 constexpr double kKnownWeight = 0.25;  ///< of cells that are seen anyway, in the loss
 
 /// Where each cell of a square grid lands under one of its eight symmetries.
@@ -26,15 +28,15 @@ class PixelCnnStage : public Stage {
  public:
   PixelCnnStage(const TrainOptions& options, torch::Device device)
       : autoencoder_(read_autoencoder(options.codes, device)),
-        net_(options.width > 0 ? options.width : kShippedWidth, autoencoder_.codes(), options.seed),
+        net_(width_of(options, kShippedWidth, kPublishedWidth), autoencoder_.codes(), options.seed),
         adam_(on_device(net_.parameters, device), adam_options()) {}
 
   StageDefaults defaults() const override { return {16, 12000, 1e-3}; }
   Augmentation augmentation() const override { return {true, true, true}; }
-  bool pairs() const override { return true; }
+  Wanted wanted() const override { return {true, false, true}; }
 
   Values step(const Batch& batch, torch::Generator generator, double learning_rate) override {
-    const Tensor codes = codes_of(batch);
+    const Tensor codes = codes_of(batch.color);
     // Any order may meet any picture: orders change places, and are flipped and transposed.
     const std::int64_t n = codes.size(0), side = codes.size(1);
     const Tensor other = torch::randperm(n, generator).to(codes.device());
@@ -65,7 +67,8 @@ class PixelCnnStage : public Stage {
 
   Values test(const Batch& batch) override {
     const torch::NoGradGuard guard;
-    const Tensor codes = codes_of(batch), flat = codes.flatten(), unseen = batch.unseen.flatten();
+    const Tensor codes = codes_of(batch.color), flat = codes.flatten(),
+                 unseen = batch.unseen.flatten();
     const double cells = std::max(unseen.sum().item<double>(), 1.0);
     const auto bits = [&](const Tensor& probability) {
       return -(torch::log2(probability.clamp_min(1e-12)) * unseen).sum().item<double>() / cells;
@@ -86,16 +89,22 @@ class PixelCnnStage : public Stage {
             {"missing_share", unseen.mean().item<double>()}};
   }
 
+  /// Truth, projection, true codes decoded, and completions: beside what is seen, as the program
+  /// would make them.
   std::vector<std::vector<Tensor>> pictures(const Batch& batch) override {
     const torch::NoGradGuard guard;
-    const Tensor codes = codes_of(batch);
-    const Tensor image = autoencoder_.decode(autoencoder_.embed(codes)).clamp(-1, 1);
-    const Tensor guess = net_.forward(codes, batch.order).argmax(1).view_as(codes);
-    const Tensor filled = torch::where(batch.unseen.view_as(codes) > 0, guess, codes);
-    const Tensor likely = autoencoder_.decode(autoencoder_.embed(filled)).clamp(-1, 1);
+    const auto decoded = [&](const Tensor& codes) {
+      return autoencoder_.decode(autoencoder_.embed(codes)).clamp(-1, 1);
+    };
+    const Tensor image = decoded(codes_of(batch.color)), seen = codes_of(batch.splat);
     std::vector<std::vector<Tensor>> rows;
-    for (std::int64_t i = 0; i < codes.size(0); ++i) {
-      rows.push_back({batch.color[i], batch.splat[i], image[i], likely[i]});
+    for (std::int64_t i = 0; i < image.size(0); ++i) {
+      rows.push_back({batch.color[i], batch.splat[i], image[i]});
+      const Tensor made = decoded(
+          completions(net_.parameters, seen[i], batch.order[i], batch.unseen[i], kCompletions));
+      for (std::int64_t k = 0; k < kCompletions; ++k) {
+        rows.back().push_back(torch::where(batch.missing[i] > 0, made[k], batch.splat[i]));
+      }
     }
     return rows;
   }
@@ -109,9 +118,9 @@ class PixelCnnStage : public Stage {
     return options;
   }
 
-  Tensor codes_of(const Batch& batch) const {
+  Tensor codes_of(const Tensor& picture) const {
     const torch::NoGradGuard guard;
-    return autoencoder_.nearest(autoencoder_.encode(batch.color));
+    return autoencoder_.nearest(autoencoder_.encode(picture));
   }
 
   /// The code of the known cell that is nearest to each cell: [n, cells].

@@ -11,7 +11,7 @@
 namespace ps::train {
 namespace {
 
-constexpr int kShippedWidth = 16;
+constexpr int kPublishedWidth = 64, kShippedWidth = 16;  ///< g, and d of the discriminator
 constexpr double kPerceptual = 1, kAdversarial = 0.03,
                  kMatching = 0.5;  ///< weights of losses beside L1's 1
 
@@ -38,17 +38,17 @@ class RefineStage : public Stage {
  public:
   RefineStage(const TrainOptions& options, torch::Device device)
       : autoencoder_(read_autoencoder(options.codes, device)),
-        net_(options.width > 0 ? options.width : kShippedWidth, options.seed),
-        critic_(options.width > 0 ? options.width : kShippedWidth, options.seed + 1),
+        net_(width_of(options, kShippedWidth, kPublishedWidth), options.seed),
+        critic_(width_of(options, kShippedWidth, kPublishedWidth), options.seed + 1),
         adam_(on_device(net_.parameters, device), betas()),
         critic_adam_(on_device(critic_.parameters, device), betas()) {
     if (!options.features.empty()) lpips_ = std::make_unique<Lpips>(options.features, device);
   }
 
-  StageDefaults defaults() const override { return {8, 8000, 5e-4}; }
+  StageDefaults defaults() const override { return {8, 8000, 5e-4, 5}; }
   // A splat stands beside the picture: nothing may be cropped or flipped by itself.
   Augmentation augmentation() const override { return {false, false, false}; }
-  bool pairs() const override { return true; }
+  Wanted wanted() const override { return {true, false, true}; }
 
   Values step(const Batch& batch, torch::Generator generator, double learning_rate) override {
     const Question question = part_of(question_of(batch), generator);

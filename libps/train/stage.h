@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "libps/train/augmentation.h"
 #include "libps/train/dataset.h"
 #include "libps/train/parameters.h"
 #include "libps/train/train.h"
@@ -20,6 +21,7 @@ struct StageDefaults {
   int batch = 8;
   std::int64_t steps = 10000;
   double learning_rate = 1e-3;
+  int curriculum = 0;  ///< as TrainOptions' own
 };
 
 class Stage {
@@ -28,8 +30,7 @@ class Stage {
 
   virtual StageDefaults defaults() const = 0;
   virtual Augmentation augmentation() const { return {true, true, true}; }
-  /// Whether examples are second views of pairs, with their splats and orders.
-  virtual bool pairs() const { return false; }
+  virtual Wanted wanted() const { return {}; }
 
   /// @brief Told once what it is trained on, for what scores are compared with.
   virtual void look_at(const Dataset&) {}
@@ -53,8 +54,18 @@ class Stage {
   virtual std::map<std::string, std::string> metadata() const { return {}; }
 };
 
+/// @return the width that is asked for
+inline int width_of(const TrainOptions& options, int shipped, int published) {
+  if (options.width == kPaperWidth) return published;
+  return options.width > 0 ? options.width : shipped;
+}
+
 /// @return the parameters, moved to the device
 Parameters& on_device(Parameters& parameters, torch::Device device);
+
+/// @brief How far views of a pair may be turned at a step: it grows to `most` in `curriculum` equal
+/// steps, each as long; 0 = any.
+double turn_limit(std::int64_t step, std::int64_t steps, int curriculum, double most);
 
 std::unique_ptr<Stage> make_classifier_stage(const TrainOptions& options, torch::Device device);
 std::unique_ptr<Stage> make_depth_stage(const TrainOptions& options, torch::Device device);

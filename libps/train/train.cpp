@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "libps/core/error.h"
+#include "libps/core/parallel.h"
 #include "libps/train/checkpoint.h"
+#include "libps/train/shard.h"
 #include "libps/train/stage.h"
 
 namespace fs = std::filesystem;
@@ -93,13 +95,22 @@ class Run {
         progress_(progress),
         device_(device_of(options.device)),
         stage_(maker_of(options.stage)(options, device_)),
+        wanted_(stage_->wanted()),
         train_(options.train),
-        shares_(shares_of(train_, options.frames_share)) {
+        shares_(shares_of(train_)) {
+    if (wanted_.partners && !train_.posed()) {
+      throw Error(options.train.string(), "no pair's pose is known",
+                  "examples with poses, which `train data` writes now");
+    }
     if (!options.test.empty()) test_.emplace(options.test);
     const StageDefaults defaults = stage_->defaults();
     if (options_.batch == 0) options_.batch = defaults.batch;
-    if (options_.steps == 0) options_.steps = defaults.steps;
+    if (options_.steps == 0) {
+      const double scaled = static_cast<double>(defaults.steps) * options_.steps_scale;
+      options_.steps = std::max<std::int64_t>(std::llround(scaled), 1);
+    }
     if (options_.learning_rate == 0) options_.learning_rate = defaults.learning_rate;
+    if (options_.curriculum < 0) options_.curriculum = defaults.curriculum;
     std::error_code failed;
     fs::create_directories(options_.out, failed);
     if (failed) throw Error(options_.out.string(), failed.message(), "a folder that can be made");
@@ -135,20 +146,39 @@ class Run {
   }
 
  private:
-  static std::vector<double> shares_of(const Dataset& data, double frames_share) {
-    std::vector<double> shares;
-    for (const std::string& group : data.groups()) {
-      shares.push_back(group == "frames" ? frames_share : 1 - frames_share);
+  /// Whether a group has what the stage wants.
+  bool is_of_use(const std::string& group) const { return group != kPosed || !wanted_.depth; }
+
+  /// Groups of one kind share by their sizes.
+  std::vector<double> shares_of(const Dataset& data) const {
+    const auto real = [](const std::string& group) { return group == kFrames || group == kPosed; };
+    double sizes[2] = {0, 0};
+    for (std::size_t g = 0; g < data.groups().size(); ++g) {
+      const std::string& group = data.groups()[g];
+      if (is_of_use(group)) sizes[real(group)] += static_cast<double>(data.size(g));
     }
-    if (shares.size() == 1) shares[0] = 1;
+    if (sizes[0] + sizes[1] == 0) {
+      throw Error(options_.train.string(), "no example's depth is known",
+                  "others, or `train depth --supervision poses`");
+    }
+    const bool both = sizes[0] > 0 && sizes[1] > 0;
+    std::vector<double> shares;
+    for (std::size_t g = 0; g < data.groups().size(); ++g) {
+      const std::string& group = data.groups()[g];
+      const double kind = real(group) ? options_.frames_share : 1 - options_.frames_share;
+      const double part = static_cast<double>(data.size(g)) / sizes[real(group)];
+      shares.push_back(is_of_use(group) ? (both ? kind : 1) * part : 0);
+    }
     return shares;
   }
 
   void one() {
     const Clock::time_point start = Clock::now();
     torch::Generator generator = generator_of(options_.seed, step_);
-    Batch batch = train_.batch(train_.draw(options_.batch, shares_, stage_->pairs(), generator),
-                               stage_->pairs(), device_);
+    Batch batch = train_.batch(
+        train_.draw(options_.batch, shares_, wanted_.splats, generator,
+                    turn_limit(step_, options_.steps, options_.curriculum, train_.most_turn())),
+        wanted_, device_);
     augment(batch, stage_->augmentation(), generator);
     means_.add(
         stage_->step(batch, generator, rate_at(step_, options_.steps, options_.learning_rate)));
@@ -162,6 +192,7 @@ class Run {
     Values scores;
     std::vector<std::vector<Tensor>> pictures;
     for (std::size_t g = 0; g < test_->groups().size(); ++g) {
+      if (!is_of_use(test_->groups()[g])) continue;
       for (const auto& [name, value] : scores_of(g, pictures)) {
         scores[test_->groups()[g] + "_" + name] = value;
       }
@@ -175,20 +206,20 @@ class Run {
 
   Values scores_of(std::size_t group, std::vector<std::vector<Tensor>>& pictures) {
     constexpr std::size_t kShown = 6, kAtOnce = 16;
-    const auto chosen = test_->spread(group, options_.test_count, stage_->pairs());
+    const auto chosen = test_->spread(group, options_.test_count, wanted_.splats);
     Values sums;
     for (std::size_t i = 0; i < chosen.size(); i += kAtOnce) {
       const std::size_t end = std::min(i + kAtOnce, chosen.size());
       const auto count = static_cast<double>(end - i);
       const Batch batch = test_->batch({chosen.begin() + static_cast<std::ptrdiff_t>(i),
                                         chosen.begin() + static_cast<std::ptrdiff_t>(end)},
-                                       stage_->pairs(), device_);
+                                       wanted_, device_);
       for (const auto& [name, value] : stage_->test(batch)) {
         sums[name] += value * count / static_cast<double>(chosen.size());
       }
     }
-    const auto shown = test_->spread(group, kShown, stage_->pairs());
-    for (auto& row : stage_->pictures(test_->batch(shown, stage_->pairs(), device_))) {
+    const auto shown = test_->spread(group, kShown, wanted_.splats);
+    for (auto& row : stage_->pictures(test_->batch(shown, wanted_, device_))) {
       pictures.push_back(std::move(row));
     }
     return sums;
@@ -207,6 +238,7 @@ class Run {
   const TrainProgress& progress_;
   torch::Device device_;
   std::unique_ptr<Stage> stage_;
+  Wanted wanted_;
   Dataset train_;
   std::optional<Dataset> test_;
   std::vector<double> shares_;
@@ -223,6 +255,12 @@ Parameters& on_device(Parameters& parameters, torch::Device device) {
   return parameters;
 }
 
+double turn_limit(std::int64_t step, std::int64_t steps, int curriculum, double most) {
+  if (curriculum == 0) return Dataset::kAnyTurn;
+  const auto part = static_cast<double>(step * curriculum / steps + 1);
+  return most * (part / curriculum);
+}
+
 const std::vector<std::string>& stage_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
@@ -234,6 +272,7 @@ const std::vector<std::string>& stage_names() {
 
 TrainReport train(const TrainOptions& options, const TrainProgress& progress) {
   if (options.threads > 0) at::set_num_threads(options.threads);
+  set_threads(options.threads);
   return Run(options, progress).go();
 }
 

@@ -10,22 +10,31 @@
 
 namespace ps::train {
 
+/// TrainOptions::width of the published networks (SPEC.md 2).
+constexpr int kPaperWidth = -1;
+
 /// What is trained, on what, for how long.
 struct TrainOptions {
   std::string stage;            ///< one of stage_names()
   std::filesystem::path train;  ///< folder of shards to train on (shard.h)
   std::filesystem::path test;   ///< folder of shards to evaluate on, never trained on; may be empty
   std::filesystem::path out;    ///< folder of the run: checkpoint, log, weights; made when missing
-  std::filesystem::path codes;  ///< weights of a trained VQ-VAE, for pixelcnn and depth-refine
+  std::filesystem::path codes;  ///< weights of a trained VQ-VAE, for pixelcnn and refine
   std::filesystem::path features;  ///< weights of LPIPS, a perceptual loss of refine; may be empty
   std::filesystem::path init;      ///< weights to begin with instead of random ones; may be empty
-  int width = 0;                   ///< of the network; 0 = the size that is shipped
+  int width = 0;                   ///< of the network; 0 = the size that is shipped; or kPaperWidth
   int batch = 0;                   ///< examples a step; 0 = the stage's own
   std::int64_t steps = 0;  ///< in all; the learning rate falls to 0 by then; 0 = the stage's own
+  double steps_scale = 1;  ///< of the stage's own steps
   std::int64_t stop_after =
       0;  ///< stop after so many steps of this call, as if interrupted; 0 = never
   double learning_rate = 0;    ///< 0 = the stage's own
   double frames_share = 0.35;  ///< of examples that come from real frames, where there are any
+  /// What teaches depth: "depth", where it is known; "poses", by reprojection; "both".
+  std::string supervision = "depth";
+  /// Pairs are drawn whose views are turned by no more than a limit, which grows to all in so many
+  /// equal steps over the run (SPEC.md 10); 0 = none; below 0 = the stage's own
+  int curriculum = -1;
   std::uint64_t seed = 0;
   std::string device = "cpu";  ///< or "cuda"
   int threads = 0;             ///< 0 = all

@@ -10,8 +10,9 @@ namespace {
 constexpr int kShippedWidth = 64;
 constexpr double kCommitment = 0.25;
 
-Autoencoder::Widths widths_of(int channels) {
-  if (channels == 0) channels = kShippedWidth;
+Autoencoder::Widths widths_of(const TrainOptions& options) {
+  if (options.width == kPaperWidth) return {};
+  const int channels = width_of(options, kShippedWidth, 0);
   return {channels, channels / 2, channels / 2, 512};
 }
 
@@ -28,8 +29,7 @@ Tensor random_part(const Tensor& color, torch::Generator& generator) {
 class VqvaeStage : public Stage {
  public:
   VqvaeStage(const TrainOptions& options, torch::Device device)
-      : net_(widths_of(options.width), options.seed),
-        adam_(on_device(net_.parameters, device), {}) {}
+      : net_(widths_of(options), options.seed), adam_(on_device(net_.parameters, device), {}) {}
 
   StageDefaults defaults() const override { return {24, 8000, 1e-3}; }
 

@@ -7,30 +7,27 @@
 #include <vector>
 
 #include "libps/models/autoencoder.h"
+#include "libps/models/classifier.h"
 #include "libps/models/depth_net.h"
 #include "libps/models/discriminator.h"
+#include "libps/models/lpips.h"
 #include "libps/models/pixel_cnn.h"
 #include "libps/models/refiner.h"
 #include "libps/outpaint/order.h"
+#include "libps/outpaint/sampler.h"
 #include "libps/train/autoencoder.h"
+#include "libps/train/classifier.h"
+#include "libps/train/completions.h"
 #include "libps/train/depth_net.h"
 #include "libps/train/discriminator.h"
+#include "libps/train/lpips.h"
 #include "libps/train/pixel_cnn.h"
 #include "libps/train/refiner.h"
+#include "tests/support/random_weights.h"
+#include "tests/train/support.h"
 
 namespace ps::train {
 namespace {
-
-nn::Weights weights_of(const Parameters& parameters) {
-  std::map<std::string, nn::WeightTensor> tensors;
-  for (const auto& [name, tensor] : parameters.named()) {
-    const Tensor dense = tensor.to(torch::kFloat32).contiguous();
-    nn::WeightTensor& to = tensors[name];
-    for (const auto side : dense.sizes()) to.shape.push_back(static_cast<std::size_t>(side));
-    to.values.assign(dense.data_ptr<float>(), dense.data_ptr<float>() + dense.numel());
-  }
-  return {"trained", std::move(tensors)};
-}
 
 /// Statistics and small weights as after some training, so that none of them could be left out.
 void disturb(const Parameters& parameters) {
@@ -188,6 +185,101 @@ TEST(TrainedDiscriminator, gives_what_models_discriminator_gives) {
   nn::Workspace workspace;
   models::Discriminator(weights_of(net.parameters)).score(to_ours(image), ours, workspace);
   for (int i = 0; i < 2; ++i) EXPECT_NEAR(ours[i], score[i].item<float>(), 1e-4);
+}
+
+TEST(TrainedClassifier, gives_what_models_classifier_gives) {
+  const Classifier net(8, 5, 1);
+  disturb(net.parameters);
+  for (const int side : {64, 75}) {
+    const Tensor image = picture(2, side);
+    nn::Tensor input = to_ours(image), logits({2, 1, 1, 5});
+    models::Classifier::normalise(input, input);
+    nn::Workspace workspace;
+    models::Classifier(weights_of(net.parameters)).forward(input, logits, workspace);
+    const Tensor theirs = net.forward(image, false).view({2, 5, 1, 1});
+    EXPECT_LT(difference(logits, theirs), 1e-4) << side;
+  }
+}
+
+/// Weights by chance, in a file as the published ones are.
+TensorMap random_features() {
+  TensorMap file;
+  const nn::Weights weights = models::random_lpips(8);
+  for (const auto& [name, tensor] : weights.tensors()) {
+    file[name] = FileTensor::of(tensor.values, tensor.shape);
+  }
+  return file;
+}
+
+TEST(TrainingLpips, gives_what_models_lpips_gives_and_gradients_to_the_first_picture) {
+  const ShardFolder folder("lpips");
+  folder.write("weights", random_features());
+  const Lpips net(folder.path() / "weights.safetensors", torch::kCPU);
+  const models::Lpips ours(models::random_lpips(8));
+  nn::Workspace workspace;
+  for (const int side : {64, 75}) {
+    Tensor a = picture(2, side).requires_grad_(true);
+    const Tensor b = (picture(2, side).flip({3}) + .1).clamp(-1, 1);
+    float distances[2];
+    ours.distance(to_ours(a), to_ours(b), distances, workspace);
+    const Tensor theirs = net.distance(a, b);
+    const double expected = (distances[0] + distances[1]) / 2.;
+    EXPECT_GT(expected, .01);
+    EXPECT_NEAR(theirs.item<double>(), expected, 1e-4 * expected) << side;
+    theirs.backward();
+    EXPECT_GT(a.grad().abs().sum().item<double>(), 0);
+  }
+  EXPECT_EQ(net.distance(picture(1, 64), picture(1, 64)).item<double>(), 0);
+}
+
+TEST(TrainingLpips, names_the_tensor_that_is_missing) {
+  const ShardFolder folder("lpips_bad");
+  TensorMap file = random_features();
+  file.erase("lin4.model.1.weight");
+  folder.write("weights", file);
+  const Lpips net(folder.path() / "weights.safetensors", torch::kCPU);
+  const std::string message = error_of([&] { net.distance(picture(1, 64), picture(1, 64)); });
+  EXPECT_NE(message.find("there is no tensor lin4.model.1.weight"), std::string::npos);
+}
+
+TEST(Completions, keep_what_is_seen_differ_elsewhere_and_are_the_sampler_s) {
+  const PixelCnn net(12, 32, 1);
+  cv::Mat1b background(96, 96, static_cast<uchar>(0));
+  background.colRange(50, 96).setTo(1);
+  const outpaint::Order order = outpaint::order_of(background);
+  const std::vector<std::int64_t> cells(order.cells.begin(), order.cells.end()),
+      missing(order.missing.begin(), order.missing.end());
+  const Tensor codes = torch::randint(32, {12, 12}, generator_of(3, 0));
+  const Tensor unseen = torch::tensor(missing).to(torch::kFloat32);
+  const Tensor made = completions(net.parameters, codes, torch::tensor(cells), unseen, 8);
+  ASSERT_EQ(made.sizes(), torch::IntArrayRef({8, 12, 12}));
+  const Tensor off = (made != codes).flatten(1).to(torch::kFloat32);
+  EXPECT_EQ((off * (1 - unseen)).sum().item<double>(), 0);
+  EXPECT_GT(unseen.sum().item<double>(), 40);
+  EXPECT_FALSE(torch::equal(made[0], made[1]));
+  const models::PixelCnn ours(weights_of(net.parameters));
+  std::vector<std::int32_t> known;
+  for (std::int64_t i = 0; i < 144; ++i) known.push_back(codes.flatten()[i].item<std::int32_t>());
+  const auto expected = outpaint::Sampler(ours, order, known).sample(0, 8);
+  for (std::int64_t i = 0; i < 144; ++i) {
+    EXPECT_EQ(made[7].flatten()[i].item<std::int32_t>(),
+              expected[7].codes[static_cast<std::size_t>(i)]);
+  }
+  // Where nothing is missing, there is nothing to make.
+  const Tensor whole = completions(net.parameters, codes, torch::tensor(cells), unseen * 0, 2);
+  EXPECT_TRUE(torch::equal(whole[1], codes));
+}
+
+TEST(PublishedWidths, have_the_published_numbers_of_parameters) {
+  const double millions = 1e6;
+  EXPECT_NEAR(static_cast<double>(DepthNet(32, 0).parameters.count()) / millions, 9.80, .01);
+  EXPECT_NEAR(static_cast<double>(Autoencoder({}, 0).parameters.count()) / millions, .66 + .36,
+              .01);
+  EXPECT_NEAR(static_cast<double>(PixelCnn(80, 512, 0).parameters.count()) / millions, 5.59, .01);
+  EXPECT_NEAR(static_cast<double>(Refiner(64, 0).parameters.count()) / millions, 3.54, .02);
+  EXPECT_NEAR(static_cast<double>(Discriminator(64, 0).parameters.count()) / millions, 5.53, .01);
+  EXPECT_NEAR(static_cast<double>(Classifier(64, 365, 0).parameters.count()) / millions, 11.36,
+              .01);
 }
 
 }  // namespace

@@ -1,42 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every stage, on two rooms and with networks of a few channels.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include "io/weights_file.h"
-#include "libps/core/error.h"
 #include "libps/models/autoencoder.h"
 #include "libps/models/classifier.h"
 #include "libps/models/depth_net.h"
 #include "libps/models/discriminator.h"
 #include "libps/models/pixel_cnn.h"
 #include "libps/models/refiner.h"
+#include "libps/train/depth_net.h"
 #include "libps/train/room_examples.h"
 #include "libps/train/train.h"
+#include "tests/train/support.h"
 
 namespace fs = std::filesystem;
 
 namespace ps::train {
 namespace {
-
-std::string bytes_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::string message_of(const TrainOptions& options) {
-  try {
-    train(options, {});
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
 
 class Training : public testing::Test {
  protected:
@@ -111,6 +95,29 @@ TEST_F(Training, makes_a_refiner_and_a_discriminator_that_models_reads) {
 TEST_F(Training, makes_a_pixel_cnn_that_models_reads) {
   const models::PixelCnn net(trained("pixelcnn", "missing_bits"));
   EXPECT_EQ(net.codes(), 512);
+}
+
+TEST_F(Training, shows_eight_completions_of_each_view) {
+  TrainOptions o = options("pixelcnn", "sheet");
+  o.width = 4;
+  o.steps = 1;
+  cv::Size size;
+  train(o, [&](const TrainEvent& event) {
+    if (event.sheet != nullptr) size = {event.sheet->width, event.sheet->height};
+    return true;
+  });
+  // Truth, projection, true codes, completions; a row for each of the two test views.
+  EXPECT_EQ(size, cv::Size((3 + 8) * 256, 2 * 256));
+}
+
+TEST_F(Training, published_widths_can_be_asked_for_and_runs_scaled) {
+  TrainOptions o = options("depth", "paper");
+  o.width = kPaperWidth;
+  o.steps = 0;
+  o.steps_scale = 1e-9;
+  const TrainReport report = train(o, {});
+  EXPECT_EQ(report.steps, 1);
+  EXPECT_EQ(report.parameters, DepthNet(32, 0).parameters.count());
 }
 
 TEST_F(Training, makes_a_classifier_that_models_reads) {
