@@ -84,7 +84,7 @@ View load_frame(const RgbdFolder& folder, const RgbdFrame& frame, double depth_s
     view.color = read_photo(frame.color).color;
     if (frame.depth.empty()) {
       view.depth = Depth::zeros(view.color.size());
-      view.intrinsics = intrinsics_for(view.color.size(), folder, frame);
+      view.intrinsics = fitted_lens(folder.intrinsics, view.color.size(), frame.color.string());
       if (notes != nullptr) *notes = {false, true};
       return view;
     }

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/scene/budget.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "libps/core/error.h"
+#include "libps/core/image.h"
+#include "libps/eval/image_metrics.h"
+#include "libps/geometry/splat.h"
+#include "libps/scene/thinner.h"
+
+namespace ps {
+namespace {
+
+constexpr std::size_t kPictures = 8;  ///< that a target of PSNR is judged by
+
+void check(const std::vector<PlannedView>& views, const BudgetOptions& o) {
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const std::string where = "planned view " + std::to_string(i);
+    check(views[i].intrinsics, where);
+    checked_pose(views[i].world_from_cam.matrix(), where);
+  }
+  const auto refuse = [](const char* option, double value, const char* expected) {
+    throw Error(std::string("budget, ") + option, std::to_string(value), expected);
+  };
+  if (!(o.radius > 0 && o.radius <= 64)) refuse("radius", o.radius, "above 0, at most 64 pixels");
+  if (!(o.pixels > 0 && o.pixels <= o.radius)) {
+    refuse("pixels", o.pixels, "above 0, at most the splats' radius");
+  }
+  if (!(o.spacing > 0 && o.spacing <= 1)) refuse("spacing", o.spacing, "above 0, at most 1 radius");
+  if (!(o.tolerance >= 0 && o.tolerance <= 1)) refuse("tolerance", o.tolerance, "0 to 1");
+  if (!(o.psnr >= 0 && std::isfinite(o.psnr))) refuse("psnr", o.psnr, "dB, or 0 for no target");
+}
+
+/// Pictures of the whole cloud, for those of thinned ones to be held against.
+class Pictures {
+ public:
+  Pictures(const Cloud& cloud, const std::vector<PlannedView>& views, float radius) {
+    options_.radius = radius;
+    options_.renormalise = true;
+    const std::size_t count = std::min(kPictures, views.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      views_.push_back(views[(2 * i + 1) * views.size() / (2 * count)]);
+      whole_.push_back(draw(cloud, views_.back()));
+    }
+  }
+
+  /// @return dB, of the view where it is least; infinite where the whole cloud hits none
+  double worst_psnr(const Cloud& cloud) const {
+    double worst = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      const Splat picture = draw(cloud, views_[i]);
+      worst = std::fmin(worst, psnr(picture.color, whole_[i].color, whole_[i].hit));
+    }
+    return worst;
+  }
+
+ private:
+  Splat draw(const Cloud& cloud, const PlannedView& view) const {
+    return splat(cloud, view.intrinsics, view.world_from_cam, options_);
+  }
+
+  SplatOptions options_;
+  std::vector<PlannedView> views_;
+  std::vector<Splat> whole_;
+};
+
+Point point_of(const Sample& sample, const Cloud& cloud) {
+  Point p = cloud[sample.point];
+  if (sample.weight <= 1) return p;
+  p.r = to_byte(sample.color.x() / 255);
+  p.g = to_byte(sample.color.y() / 255);
+  p.b = to_byte(sample.color.z() / 255);
+  // Points on top of each other have more area than they cover.
+  p.footprint = std::max(sample.footprint, std::min(std::sqrt(sample.area), 2 * sample.spread));
+  return p;
+}
+
+/// @param others  numbers of points that stay as they are
+Cloud cloud_of(const Cloud& cloud, const std::vector<Sample>& samples,
+               const std::vector<std::uint32_t>& others) {
+  std::vector<std::pair<std::uint32_t, const Sample*>> order;
+  for (const Sample& sample : samples) order.emplace_back(sample.point, &sample);
+  for (const std::uint32_t point : others) order.emplace_back(point, nullptr);
+  std::sort(order.begin(), order.end());
+  Cloud result;
+  result.reserve(order.size());
+  for (const auto& [point, sample] : order) {
+    result.push_back(sample ? point_of(*sample, cloud) : cloud[point]);
+  }
+  return result;
+}
+
+/// @brief Bisects whole tolerances, as colours differ by whole numbers.
+/// @return what was thinned most of all that are near enough to `pictures`; without a tolerance
+/// that is, the samples as they are
+std::vector<Sample> thinned_while_alike(const Thinner& thinner, const Pictures& pictures,
+                                        double psnr, const std::vector<Sample>& seen,
+                                        const Cloud& cloud,
+                                        const std::vector<std::uint32_t>& others,
+                                        BudgetReport* report) {
+  std::vector<Sample> best = seen;
+  int low = -1, high = Surroundings::kApart;
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    std::vector<Sample> samples = thinner.at(middle);
+    const bool alike = pictures.worst_psnr(cloud_of(cloud, samples, others)) >= psnr;
+    (alike ? low : high) = middle;
+    if (alike) best = std::move(samples);
+  }
+  report->tolerance = std::max(low, 0) / 255.0;
+  return best;
+}
+
+/// Thins what views see to the options' targets.
+Cloud thinned_to_targets(const Cloud& cloud, const std::vector<PlannedView>& views,
+                         const BudgetOptions& o, const std::vector<Sample>& seen,
+                         const std::vector<std::uint32_t>& others, BudgetReport* report) {
+  const Thinner thinner(seen, o);
+  const std::size_t most = o.points - std::min(o.points, others.size());
+  if (o.psnr <= 0) {
+    report->tolerance = o.tolerance;
+    return cloud_of(cloud,
+                    o.points > 0 ? thinner.down_to(most, report)
+                                 : thinner.at(std::min(255 * o.tolerance, Thinner::kAllColors)),
+                    others);
+  }
+  const Pictures pictures(cloud, views, o.radius);
+  std::vector<Sample> samples =
+      thinned_while_alike(thinner, pictures, o.psnr, seen, cloud, others, report);
+  if (o.points > 0 && samples.size() > most) samples = thinner.down_to(most, report);
+  Cloud result = cloud_of(cloud, samples, others);
+  report->psnr = pictures.worst_psnr(result);
+  return result;
+}
+
+}  // namespace
+
+Cloud thinned(const Cloud& cloud, const std::vector<PlannedView>& views,
+              const BudgetOptions& options, BudgetReport* report) {
+  check(views, options);
+  if (cloud.size() >= UINT32_MAX) throw Error("budget", "4294967295 points and more", "fewer");
+  BudgetReport local;
+  BudgetReport& told = report ? *report : local;
+  told = {};
+  told.pixels = options.pixels;
+  std::vector<std::uint32_t> others;
+  const std::vector<Sample> seen = seen_samples(cloud, views, options.radius, &others);
+  told.unseen = others.size();
+  told.not_finite = cloud.size() - seen.size() - others.size();
+  if (options.drop_unseen && !views.empty()) others.clear();
+  const std::size_t finite = seen.size() + others.size();
+  Cloud result = seen.empty() ? cloud_of(cloud, {}, others)
+                              : thinned_to_targets(cloud, views, options, seen, others, &told);
+  told.points = result.size();
+  told.merged = finite - result.size();
+  return result;
+}
+
+}  // namespace ps

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/scene/merge.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace ps {
+namespace {
+
+constexpr std::uint32_t kLeft = UINT32_MAX;
+
+/// A sample that may take others, and its cell.
+struct Turn {
+  float reach;
+  std::uint32_t cell;
+  std::uint32_t sample;
+};
+
+std::vector<Turn> turns_of(const std::vector<std::uint32_t>& cells, const SampleGrid& grid,
+                           const std::vector<float>& reach) {
+  std::vector<Turn> turns;
+  for (const std::uint32_t cell : cells) {
+    for (const std::uint32_t i : grid.own(cell)) turns.push_back({reach[i], cell, i});
+  }
+  // What shows detail first, so that no neighbour takes it. Cells stay together.
+  std::stable_sort(turns.begin(), turns.end(),
+                   [](const Turn& a, const Turn& b) { return a.reach < b.reach; });
+  return turns;
+}
+
+/// @return for each sample the number of the one that speaks for it
+std::vector<std::uint32_t> find_speakers(const std::vector<Sample>& samples, const SampleGrid& grid,
+                                         const std::vector<float>& reach) {
+  std::vector<std::uint32_t> speaker(samples.size(), kLeft);
+  grid.for_each_block([&](const std::vector<std::uint32_t>& cells) {
+    std::vector<std::uint32_t> around;
+    std::uint32_t gathered = UINT32_MAX;
+    for (const Turn& turn : turns_of(cells, grid, reach)) {
+      if (speaker[turn.sample] != kLeft) continue;
+      speaker[turn.sample] = turn.sample;
+      if (turn.reach <= 0) continue;
+      if (turn.cell != gathered) grid.list_around(turn.cell, &around);
+      gathered = turn.cell;
+      const Sample& s = samples[turn.sample];
+      const float most = turn.reach * s.pixel;
+      for (const std::uint32_t i : around) {
+        const float d2 = (samples[i].position - s.position).squaredNorm();
+        if (d2 <= most * most && speaker[i] == kLeft) speaker[i] = turn.sample;
+      }
+    }
+  });
+  return speaker;
+}
+
+void take(Sample* speaker, const Sample& other) {
+  speaker->weight += other.weight;
+  speaker->color += (other.color - speaker->color) * (other.weight / speaker->weight);
+  speaker->pixel = std::min(speaker->pixel, other.pixel);
+  speaker->area += other.area;
+  speaker->footprint = std::max(speaker->footprint, other.footprint);
+  speaker->spread =
+      std::max(speaker->spread, (other.position - speaker->position).norm() + other.spread);
+}
+
+}  // namespace
+
+std::vector<Sample> merged(const std::vector<Sample>& samples, const SampleGrid& grid,
+                           const std::vector<float>& reach) {
+  const std::vector<std::uint32_t> speaker = find_speakers(samples, grid, reach);
+  std::vector<std::uint32_t> place(samples.size());
+  std::vector<Sample> result;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (speaker[i] != i) continue;
+    place[i] = static_cast<std::uint32_t>(result.size());
+    result.push_back(samples[i]);
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (speaker[i] != i) take(&result[place[speaker[i]]], samples[i]);
+  }
+  return result;
+}
+
+}  // namespace ps

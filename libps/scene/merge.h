@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Internal to the scene room: samples that speak for others.
+#pragma once
+
+#include <vector>
+
+#include "libps/scene/sample_grid.h"
+
+namespace ps {
+
+/// @brief Thins samples: one after another, those of the least reach first, each that is left takes
+/// those left within its reach, and speaks for them.
+/// @param grid   of cells of at least the greatest reach
+/// @param reach  pixels, one for each sample; 0 takes none
+/// @return those that took themselves, in order
+std::vector<Sample> merged(const std::vector<Sample>& samples, const SampleGrid& grid,
+                           const std::vector<float>& reach);
+
+}  // namespace ps

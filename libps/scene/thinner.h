@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Internal to the scene room: a cloud that can be thinned again and again, as a search does.
+#pragma once
+
+#include <vector>
+
+#include "libps/scene/surroundings.h"
+
+namespace ps {
+
+/// @brief Looks at samples once, then thins them to any tolerance.
+class Thinner {
+ public:
+  /// A tolerance at which all colours are alike; those below are whole steps of 8-bit colours.
+  static constexpr double kAllColors = Surroundings::kApart - 1;
+
+  /// @param samples  as seen_samples() gives them
+  Thinner(const std::vector<Sample>& samples, const BudgetOptions& options);
+
+  /// @param tolerance  0 to kAllColors; its fraction is the share of the samples, spread evenly,
+  /// that are given one more
+  std::vector<Sample> at(double tolerance) const;
+
+  /// @brief Thins by as little as leaves at most `most`, if that can be; writes to the report what
+  /// tolerance it took, or that edges had to be merged across, and within how many pixels.
+  std::vector<Sample> down_to(std::size_t most, BudgetReport* report) const;
+
+ private:
+  const float pixels_;   ///< BudgetOptions::pixels
+  const float radius_;   ///< pixels, of splats
+  const float spacing_;  ///< pixels
+  const std::vector<Sample> samples_;
+  const SampleGrid grid_;
+  const std::vector<Surroundings> surroundings_;
+};
+
+}  // namespace ps
