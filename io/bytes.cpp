@@ -2,6 +2,7 @@
 #include "io/bytes.h"
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -38,6 +39,13 @@ void InputFile::read(std::size_t offset, void* to, std::size_t bytes) const {
     if (got == 0) throw Error(name_, "became shorter while it was read");
     done += static_cast<std::size_t>(got);
   }
+}
+
+void* InputFile::map() const {
+  if (size_ == 0) return nullptr;
+  void* const data = mmap(nullptr, size_, PROT_READ, MAP_SHARED, descriptor_, 0);
+  if (data != MAP_FAILED) return data;
+  throw Error(name_, "cannot be mapped: " + std::generic_category().message(errno));
 }
 
 FileBytes::FileBytes(const std::filesystem::path& path) {

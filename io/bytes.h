@@ -27,6 +27,9 @@ class InputFile {
   std::size_t size() const { return size_; }
   /// Reads exactly `bytes` from `offset`; throws ps::Error when the file ends before.
   void read(std::size_t offset, void* to, std::size_t bytes) const;
+  /// @return the file's size() bytes, mapped for reading; the caller unmaps them; null when it is
+  /// empty
+  void* map() const;
 
  private:
   std::string name_;

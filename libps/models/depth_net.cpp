@@ -13,18 +13,6 @@ namespace ps::models {
 namespace {
 
 constexpr int kTaps = 9;
-const char* const kEncoderNorms[] = {"",
-                                     "batch_norm2_0",
-                                     "batch_norm4_0",
-                                     "batch_norm8_0",
-                                     "batch_norm8_1",
-                                     "batch_norm8_2",
-                                     "batch_norm8_3",
-                                     ""};
-const char* const kDecoderNorms[] = {"batch_norm8_4", "batch_norm8_5", "batch_norm8_6",
-                                     "batch_norm8_7", "batch_norm4_1", "batch_norm2_1",
-                                     "batch_norm"};
-
 /// A 3x3 convolution to one channel as a matrix that keeps its nine products apart.
 nn::WeightTensor taps_apart(const nn::WeightTensor& weight) {
   const std::size_t in = weight.shape[1];
@@ -62,7 +50,7 @@ std::vector<nn::Convolution> read_encoder(const Layers& layers) {
   spec.kernel = 4;
   spec.stride = 2;
   spec.padding = 1;
-  for (const char* norm : kEncoderNorms) {
+  for (const char* norm : DepthNet::kEncoderNorms) {
     encoder.push_back(layers.convolution("conv" + std::to_string(encoder.size() + 1), spec, norm));
     spec.in = encoder.back().out_channels();
   }
@@ -75,7 +63,7 @@ std::vector<nn::Convolution> read_decoder(const Layers& layers,
   ConvolutionSpec spec;
   spec.in = encoder.back().out_channels();
   spec.padding = 1;
-  for (const char* norm : kDecoderNorms) {
+  for (const char* norm : DepthNet::kDecoderNorms) {
     decoder.push_back(layers.convolution("dconv" + std::to_string(decoder.size() + 1), spec, norm));
     spec.in =
         decoder.back().out_channels() + encoder[encoder.size() - 1 - decoder.size()].out_channels();

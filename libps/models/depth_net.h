@@ -16,6 +16,20 @@ class Layers;
 /// @brief The U-Net that guesses depth from one image (SPEC.md 3; `pts_regressor.*`).
 class DepthNet {
  public:
+  /// Batch norms behind each convolution, by their published names; "" = none. There is none behind
+  /// the last of the decoder.
+  static constexpr const char* kEncoderNorms[] = {"",
+                                                  "batch_norm2_0",
+                                                  "batch_norm4_0",
+                                                  "batch_norm8_0",
+                                                  "batch_norm8_1",
+                                                  "batch_norm8_2",
+                                                  "batch_norm8_3",
+                                                  ""};
+  static constexpr const char* kDecoderNorms[] = {"batch_norm8_4", "batch_norm8_5", "batch_norm8_6",
+                                                  "batch_norm8_7", "batch_norm4_1", "batch_norm2_1",
+                                                  "batch_norm"};
+
   static constexpr int kMultiple = 256;  ///< of an image's sides: it is halved eight times
 
   explicit DepthNet(const nn::Weights& weights, const ModelOptions& options = {});

@@ -39,8 +39,8 @@ struct Wanted {
   bool depth = false;     ///< of no use where depth is unknown
 };
 
-/// @brief Examples of a folder of shards (shard.h): GROUP-NUMBER.safetensors. All are held in
-/// memory.
+/// @brief Examples of a folder of shards (shard.h): GROUP-NUMBER.safetensors. They are
+/// mapped: nobody may make them shorter meanwhile.
 class Dataset {
  public:
   /// Throws ps::Error when there is no shard, or one is not sound.

@@ -1,31 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "libps/train/depth_net.h"
 
-#include <array>
 #include <string>
 #include <vector>
 
+#include "libps/models/depth_net.h"
 #include "libps/train/layers.h"
 
 namespace ps::train {
 namespace {
 
 constexpr int kLevels = 8;
-// The norm after each convolution, by its published name; none after the first and the last.
-const char* const kEncoderNorms[kLevels] = {"",
-                                            "batch_norm2_0",
-                                            "batch_norm4_0",
-                                            "batch_norm8_0",
-                                            "batch_norm8_1",
-                                            "batch_norm8_2",
-                                            "batch_norm8_3",
-                                            ""};
-const char* const kDecoderNorms[kLevels] = {
-    "batch_norm8_4", "batch_norm8_5", "batch_norm8_6", "batch_norm8_7",
-    "batch_norm4_1", "batch_norm2_1", "batch_norm",    ""};
 constexpr int kEncoderWidths[kLevels] = {1, 2, 4, 8, 8, 8, 8, 8};
 constexpr int kDecoderWidths[kLevels - 1] = {8, 8, 8, 8, 4, 2, 1};
 
+std::string encoder_norm(int level) { return models::DepthNet::kEncoderNorms[level]; }
+std::string decoder_norm(int level) {
+  return level + 1 < kLevels ? models::DepthNet::kDecoderNorms[level] : "";
+}
 std::string encoder_name(int level) { return "conv" + std::to_string(level + 1); }
 std::string decoder_name(int level) { return "dconv" + std::to_string(level + 1); }
 
@@ -36,14 +28,14 @@ DepthNet::DepthNet(int f, std::uint64_t seed) : parameters("pts_regressor.", see
   for (int i = 0; i < kLevels; ++i) {
     const int out = f * kEncoderWidths[i];
     add_convolution(parameters, encoder_name(i), in, out, 4);
-    if (*kEncoderNorms[i] != 0) add_batch_norm(parameters, kEncoderNorms[i], out);
+    if (!encoder_norm(i).empty()) add_batch_norm(parameters, encoder_norm(i), out);
     in = out;
   }
   for (int i = 0; i < kLevels; ++i) {
     const bool last = i + 1 == kLevels;
     const int out = last ? 1 : f * kDecoderWidths[i];
     add_convolution(parameters, decoder_name(i), in, out, 3, last ? .1 : 1);
-    if (!last) add_batch_norm(parameters, kDecoderNorms[i], out);
+    if (!last) add_batch_norm(parameters, decoder_norm(i), out);
     in = last ? out : out + f * kEncoderWidths[kLevels - 2 - i];
   }
 }
@@ -54,13 +46,13 @@ Tensor DepthNet::forward(const Tensor& image, bool training) const {
   for (int i = 0; i < kLevels; ++i) {
     if (i > 0) x = torch::leaky_relu(x, 0.2);
     x = convolution(parameters, encoder_name(i), x, 2, 1);
-    if (*kEncoderNorms[i] != 0) x = batch_norm(parameters, kEncoderNorms[i], x, training);
+    if (!encoder_norm(i).empty()) x = batch_norm(parameters, encoder_norm(i), x, training);
     skips.push_back(x);
   }
   for (int i = 0; i < kLevels; ++i) {
     x = convolution(parameters, decoder_name(i), upsample_2x(torch::relu(x)), 1, 1);
-    if (*kDecoderNorms[i] == 0) break;
-    x = batch_norm(parameters, kDecoderNorms[i], x, training);
+    if (decoder_norm(i).empty()) break;
+    x = batch_norm(parameters, decoder_norm(i), x, training);
     x = torch::cat({x, skips[static_cast<std::size_t>(kLevels - 2 - i)]}, 1);
   }
   return x;

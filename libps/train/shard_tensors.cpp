@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "libps/train/shard_tensors.h"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,22 +17,24 @@ using Shape = std::vector<std::int64_t>;
 /// Takes fields out of a file.
 class Reader {
  public:
-  Reader(TensorMap& file, std::string where) : file_(file), where_(std::move(where)) {}
+  Reader(const MappedSafetensors& file, std::string where)
+      : tensors_(file.tensors()), where_(std::move(where)) {}
 
-  bool has(const char* name) const { return file_.count(name) > 0; }
+  bool has(const char* name) const { return tensors_.count(name) > 0; }
 
-  Tensor take(const char* name, const char* dtype, torch::ScalarType type) {
-    const auto found = file_.find(name);
-    if (found == file_.end())
+  Tensor take(const char* name, const char* dtype, torch::ScalarType type) const {
+    const auto found = tensors_.find(name);
+    if (found == tensors_.end())
       throw Error(where_, std::string("there is no ") + name, "a shard of examples");
-    FileTensor& tensor = found->second;
+    const MappedSafetensors::Tensor& tensor = found->second;
     if (tensor.dtype != dtype)
       throw Error(where_, std::string(name) + " is " + tensor.dtype, dtype);
     const Shape shape(tensor.shape.begin(), tensor.shape.end());
-    return torch::from_blob(tensor.bytes.data(), shape, torch::TensorOptions().dtype(type));
+    return torch::from_blob(const_cast<std::byte*>(tensor.data), shape, type);
   }
 
-  Tensor take(const char* name, const char* dtype, torch::ScalarType type, const Shape& shape) {
+  Tensor take(const char* name, const char* dtype, torch::ScalarType type,
+              const Shape& shape) const {
     Tensor tensor = take(name, dtype, type);
     if (tensor.sizes() != torch::IntArrayRef(shape)) {
       throw Error(where_, std::string(name) + " is of the wrong shape", "that of color");
@@ -40,7 +43,7 @@ class Reader {
   }
 
  private:
-  TensorMap& file_;
+  const std::map<std::string, MappedSafetensors::Tensor>& tensors_;
   std::string where_;
 };
 
@@ -63,9 +66,8 @@ void check_geometry(const ShardTensors& shard, const std::string& where) {
 
 ShardTensors read_shard(const std::filesystem::path& path) {
   const std::string where = path.string();
-  ShardTensors shard;
-  shard.file = read_safetensors(path);
-  Reader reader(shard.file, where);
+  ShardTensors shard(path);
+  const Reader reader(shard.file, where);
   shard.color = reader.take("color", "U8", torch::kUInt8);
   if (shard.color.dim() != 4 || shard.color.size(1) != shard.color.size(2)) {
     throw Error(where, "color is of the wrong shape", "[n, s, s, 3]");

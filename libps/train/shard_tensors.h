@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "io/safetensors.h"
+#include "io/mapped_safetensors.h"
 
 namespace ps::train {
 
@@ -14,15 +14,18 @@ using torch::Tensor;
 
 /// The fields of shard.h.
 struct ShardTensors {
+  explicit ShardTensors(const std::filesystem::path& path) : file(path) {}
+
   Tensor color, depth, focal, kind, splat, flags, order;
   Tensor lens, pose;   ///< of old shards: what harms no arithmetic
   bool posed = false;  ///< whether lens and pose are in the file
 
-  TensorMap file;  ///< what they borrow
+  MappedSafetensors file;  ///< what they borrow; never written to
 };
 
-/// @brief Throws ps::Error when a field is missing, of another kind or shape, or a pose or a lens
-/// is unsound.
+/// @brief Maps a shard: of 5 GB of examples, memory holds what was looked at of late, once for all
+/// trainings. Throws ps::Error when a field is missing, of another kind or shape, or a pose or a
+/// lens is unsound.
 ShardTensors read_shard(const std::filesystem::path& path);
 
 }  // namespace ps::train

@@ -125,6 +125,23 @@ TEST(RgbdFolder, a_frame_without_depth_is_told_where_asked_else_an_error) {
   EXPECT_TRUE(has(error_of([&] { load_frame(folder, folder.frames[0]); }), "no pixel has a depth"));
 }
 
+TEST(RgbdFolder, depth_need_not_be_there_where_it_is_not_asked_for) {
+  Frames frames;
+  for (const int i : {1, 2}) frames.add(std::to_string(i), i);
+  frames.poses({"1", "2"});
+  std::filesystem::remove_all(frames.path() / "depth");
+  EXPECT_TRUE(has(error_of([&] { open_rgbd_folder(frames.path()); }), "depth: is no folder"));
+  const RgbdFolder folder = open_rgbd_folder(frames.path(), nullptr, false);
+  ASSERT_EQ(folder.frames.size(), 2u);
+  FrameNotes notes;
+  const View view = load_frame(folder, folder.frames[1], 1000, &notes);
+  EXPECT_TRUE(notes.without_depth);
+  EXPECT_NEAR(view.color(4, 4)[0], .2, .003);
+  EXPECT_EQ(view.depth.size(), view.color.size());
+  EXPECT_EQ(cv::countNonZero(view.depth), 0);
+  EXPECT_EQ(view.intrinsics.fx, 10);
+}
+
 TEST(RgbdFolder, intrinsics_of_another_size_are_scaled) {
   Frames frames;
   frames.add("1", 1);

@@ -54,9 +54,9 @@ std::set<std::int64_t> drawn(const Dataset& data, bool targets, double most_turn
 }
 
 TEST(Dataset, draws_no_pair_that_is_turned_more_than_the_limit_and_all_that_are_less) {
-  const ShardFolder folder("turns");
-  folder.write("rooms-0000", shard_of({.5f, .1f, -.3f}));
-  folder.write("rooms-0001", shard_of({.2f, 0.f}));
+  const Folder folder;
+  write_shard(folder, "rooms-0000", shard_of({.5f, .1f, -.3f}));
+  write_shard(folder, "rooms-0001", shard_of({.2f, 0.f}));
   const Dataset data(folder.path());
   EXPECT_NEAR(data.most_turn(), .5, 1e-6);
   using Set = std::set<std::int64_t>;
@@ -68,15 +68,15 @@ TEST(Dataset, draws_no_pair_that_is_turned_more_than_the_limit_and_all_that_are_
 }
 
 TEST(Dataset, draws_the_least_turned_of_a_group_where_all_are_turned_more) {
-  const ShardFolder folder("turned");
-  folder.write("frames-0000", shard_of({.6f, .4f}));
-  folder.write("rooms-0000", shard_of({.1f}));
+  const Folder folder;
+  write_shard(folder, "frames-0000", shard_of({.6f, .4f}));
+  write_shard(folder, "rooms-0000", shard_of({.1f}));
   EXPECT_EQ(drawn(Dataset(folder.path()), true, .2), (std::set<std::int64_t>{3, 5}));
 }
 
 TEST(Dataset, old_examples_know_no_turn_and_are_drawn_as_ever) {
-  const ShardFolder folder("unturned");
-  folder.write("rooms-0000", shard_of({.6f, .4f, .1f}, false));
+  const Folder folder;
+  write_shard(folder, "rooms-0000", shard_of({.6f, .4f, .1f}, false));
   const Dataset data(folder.path());
   EXPECT_EQ(data.most_turn(), 0);
   EXPECT_FALSE(data.posed());

@@ -212,8 +212,8 @@ TensorMap random_features() {
 }
 
 TEST(TrainingLpips, gives_what_models_lpips_gives_and_gradients_to_the_first_picture) {
-  const ShardFolder folder("lpips");
-  folder.write("weights", random_features());
+  const Folder folder;
+  write_shard(folder, "weights", random_features());
   const Lpips net(folder.path() / "weights.safetensors", torch::kCPU);
   const models::Lpips ours(models::random_lpips(8));
   nn::Workspace workspace;
@@ -233,10 +233,10 @@ TEST(TrainingLpips, gives_what_models_lpips_gives_and_gradients_to_the_first_pic
 }
 
 TEST(TrainingLpips, names_the_tensor_that_is_missing) {
-  const ShardFolder folder("lpips_bad");
+  const Folder folder;
   TensorMap file = random_features();
   file.erase("lin4.model.1.weight");
-  folder.write("weights", file);
+  write_shard(folder, "weights", file);
   const Lpips net(folder.path() / "weights.safetensors", torch::kCPU);
   const std::string message = error_of([&] { net.distance(picture(1, 64), picture(1, 64)); });
   EXPECT_NE(message.find("there is no tensor lin4.model.1.weight"), std::string::npos);

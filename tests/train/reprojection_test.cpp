@@ -8,7 +8,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "libps/core/error.h"
 #include "libps/train/augmentation.h"
 #include "libps/train/parameters.h"
 #include "libps/train/room_examples.h"
@@ -30,11 +29,10 @@ class Reprojection : public testing::Test {
       if (moved && pairs.size() < 4) pairs.push_back(std::move(pair));
     }
     ASSERT_EQ(pairs.size(), 4u);
-    folder().write("rooms-0000", to_shard(pairs));
+    write_shard(folder(), "rooms-0000", to_shard(pairs));
   }
-  static void TearDownTestSuite() { folder().remove(); }
-  static ShardFolder& folder() {
-    static ShardFolder made("reprojection");
+  static Folder& folder() {
+    static Folder made;
     return made;
   }
   static Batch batch() {
@@ -205,11 +203,11 @@ TEST_F(Reprojection, teaches_depth_and_its_scale_from_poses_alone) {
 }
 
 TEST_F(Reprojection, old_examples_without_poses_load_and_teach_what_they_know) {
-  const ShardFolder old("old_examples");
+  const Folder old;
   TensorMap shard = read_safetensors(folder().path() / "rooms-0000.safetensors");
   shard.erase("pose");
   shard.erase("lens");
-  old.write("rooms-0000", shard);
+  write_shard(old, "rooms-0000", shard);
   TrainOptions o = options("old");
   o.train = old.path();
   o.steps = 1;
@@ -229,10 +227,10 @@ TEST_F(Reprojection, old_examples_without_poses_load_and_teach_what_they_know) {
 }
 
 TEST_F(Reprojection, examples_without_depth_are_trained_on_by_poses_and_not_scored) {
-  const ShardFolder blind("blind");
+  const Folder blind;
   TensorMap shard = read_safetensors(folder().path() / "rooms-0000.safetensors");
   std::fill(shard["depth"].bytes.begin(), shard["depth"].bytes.end(), std::byte{0});
-  blind.write("posed-0000", shard);
+  write_shard(blind, "posed-0000", shard);
   TrainOptions o = options("blind");
   o.train = o.test = blind.path();
   o.steps = 2;
@@ -243,12 +241,12 @@ TEST_F(Reprojection, examples_without_depth_are_trained_on_by_poses_and_not_scor
 }
 
 TEST_F(Reprojection, unsound_geometry_is_named) {
-  const ShardFolder bad("bad_geometry");
+  const Folder bad;
   const TensorMap sound = read_safetensors(folder().path() / "rooms-0000.safetensors");
   const auto message = [&](const char* field, int value, float to) {
     TensorMap shard = sound;
     std::memcpy(shard[field].bytes.data() + 4 * value, &to, 4);
-    bad.write("rooms-0000", shard);
+    write_shard(bad, "rooms-0000", shard);
     return error_of([&] { Dataset data(bad.path()); });
   };
   EXPECT_NE(message("pose", 0, 2).find("a pose is not rigid"), std::string::npos);
@@ -258,7 +256,7 @@ TEST_F(Reprojection, unsound_geometry_is_named) {
   EXPECT_NE(message("lens", 2, std::nanf("")).find("a lens is unsound"), std::string::npos);
   TensorMap half = sound;
   half.erase("lens");
-  bad.write("rooms-0000", half);
+  write_shard(bad, "rooms-0000", half);
   EXPECT_NE(error_of([&] { Dataset data(bad.path()); }).find("there is no lens"),
             std::string::npos);
 }
