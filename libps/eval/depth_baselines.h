@@ -9,8 +9,7 @@
 namespace ps {
 
 /// @brief Depths that are guessed without a look at the photo, for estimates to be held against.
-/// They learn from the very depths that they are then scored on, so that none of their kind does
-/// better.
+/// They learn from the very depths that they are then scored on, which is in their favour.
 class DepthBaselines {
  public:
   /// Unknown depths (0, negative, not finite) are left out; an image without any teaches nothing.
