@@ -89,28 +89,34 @@ View read_one(const SceneInputArguments& a, const std::string& file, const std::
 }
 
 SceneInput read_frames(const SceneInputArguments& a, const Context& context) {
-  FrameChoice choice;
-  choice.every = a.every;
-  if (!a.frames.empty()) parse_frames(a.frames, choice);
-  const std::vector<RgbdFolder> folders = {open_rgbd_folder(a.photo)};
-  const std::vector<ChosenFrame> frames = choose_frames(folders, choice).used;
+  std::size_t skipped = 0;
+  const std::vector<RgbdFolder> folders = {open_rgbd_folder(a.photo, &skipped)};
+  if (skipped > 0) {
+    context.warn(a.photo + ": " + std::to_string(skipped) +
+                 " frames lack colour, depth or pose and are left out");
+  }
+  const std::vector<ChosenFrame> frames = choose_frames(folders, a.choice()).used;
   if (frames.empty())
     throw Error("--frames", "no frame is in " + a.frames, "a range that has some");
   SceneInput input;
   std::vector<Pose> poses;
+  std::size_t empty = 0;
   Progress progress(context, "frames", frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     FrameNotes notes;
     View view = load_frame(*frames[i].folder, frames[i].frame, a.depth_scale, &notes);
     progress.update(i + 1);
     if (notes.without_depth) {
-      ++input.empty_views;
+      ++empty;
       continue;
     }
     poses.push_back(view.world_from_cam);
     input.views.push_back(std::move(view));
   }
   if (input.views.empty()) throw Error(a.photo, "no frame has any depth", "depth that is not 0");
+  if (empty > 0) {
+    context.warn(std::to_string(empty) + " frames have no depth at all and are left out");
+  }
   input.up = up_axis(poses);
   input.report["lens"] = to_json(input.views.front().intrinsics);
   input.report["depth"] = {{"from", a.photo}, {"frames", input.views.size()}};
@@ -137,6 +143,11 @@ void add_second(const SceneInputArguments& a, const View& first, const DepthMode
     const StampedPose given = read_trajectory(a.second_pose).front();
     second.world_from_cam = first.world_from_cam * given.world_from_cam;
     report["pose"] = {{"from", a.second_pose}};
+    if (a.second_depth.empty()) {
+      const double scale = depth_scale_between(first, second);
+      second.depth *= scale;
+      report["pose"]["depth_scale"] = scale;
+    }
   }
   input.views.push_back(shrunk(second, longest, report));
   input.report["second"] = report;
@@ -161,13 +172,33 @@ bool SceneInputArguments::is_folder() const {
   return fs::is_directory(photo, ignored);
 }
 
+bool SceneInputArguments::needs_estimate() const {
+  return !is_folder() && (depth.empty() || (!second.empty() && second_depth.empty()));
+}
+
 std::vector<fs::path> SceneInputArguments::files() const {
   std::vector<fs::path> files;
-  for (const std::string& file : {photo, depth, lens.intrinsics, second, second_depth}) {
-    std::error_code ignored;
+  std::error_code ignored;
+  for (const std::string& file :
+       {photo, depth, lens.intrinsics, second, second_depth, second_pose}) {
     if (!file.empty() && fs::is_regular_file(file, ignored)) files.emplace_back(file);
   }
+  if (!is_folder()) return files;
+  const fs::path folder = photo;
+  for (const char* name : {"trajectory.txt", "intrinsics.json"}) files.push_back(folder / name);
+  const std::vector<RgbdFolder> folders = {open_rgbd_folder(folder)};
+  for (const ChosenFrame& chosen : choose_frames(folders, choice()).used) {
+    files.push_back(chosen.frame.color);
+    files.push_back(chosen.frame.depth);
+  }
   return files;
+}
+
+FrameChoice SceneInputArguments::choice() const {
+  FrameChoice choice;
+  choice.every = every;
+  if (!frames.empty()) parse_frames(frames, choice);
+  return choice;
 }
 
 void SceneInputArguments::add_to(CLI::App& verb) {
@@ -209,6 +240,9 @@ SceneInput read_scene_input(const SceneInputArguments& a, const DepthModel* mode
     if (!a.second.empty())
       throw CLI::ValidationError("--second", "goes with a photo, not a folder");
     return read_frames(a, context);
+  }
+  if (!a.frames.empty() || a.every != 1) {
+    throw CLI::ValidationError("--frames", "goes with a folder of frames, not with a photo");
   }
   SceneInput input;
   const View photo = read_one(a, a.photo, a.depth, model, context, input.report);

@@ -8,6 +8,7 @@
 
 #include "apps/context.h"
 #include "apps/depth_model.h"
+#include "apps/frame_list.h"
 #include "apps/lens_arguments.h"
 #include "apps/report.h"
 #include "libps/geometry/lift.h"
@@ -30,15 +31,16 @@ struct SceneInputArguments {
 
   void add_to(CLI::App& verb);
   bool is_folder() const;
+  bool needs_estimate() const;  ///< whether a photo's depth is not given
+  FrameChoice choice() const;   ///< of a folder's frames
   /// @return every file that is read, weights aside
   std::vector<std::filesystem::path> files() const;
 };
 
 struct SceneInput {
-  std::vector<View> views;      ///< what was observed; the scene starts from the first
-  std::string up = "y";         ///< the world's axis
-  Json report;                  ///< what the report says of lens and depth
-  std::size_t empty_views = 0;  ///< frames that were left out, as they have no depth
+  std::vector<View> views;  ///< what was observed; the scene starts from the first
+  std::string up = "y";     ///< the world's axis
+  Json report;              ///< what the report says of lens and depth
 };
 
 /// @brief Fills the holes of a measured depth with the network's, which is made to continue it.

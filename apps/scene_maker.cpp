@@ -9,6 +9,7 @@
 #include "apps/scene_report.h"
 #include "io/trajectory.h"
 #include "libps/core/error.h"
+#include "libps/scene/view_renderer.h"
 
 namespace ps::apps {
 namespace {
@@ -17,9 +18,6 @@ constexpr std::size_t kSteps = 1000;  ///< of progress, for each view
 
 /// A photo's pixels are worth keeping down to half a pixel of the pictures.
 constexpr int kFinest = 2;
-
-constexpr const char* kGoOn =
-    "interrupted; the same command with --resume goes on with what was outpainted so far";
 
 }  // namespace
 
@@ -42,8 +40,8 @@ void SceneMaker::load_networks() {
   const Stopwatch watch;
   if (!a_.no_outpaint) {
     models_ = std::make_unique<SceneModels>(a_.weights, a_.select, context_);
-  } else if (a_.input.depth.empty() && !a_.input.is_folder()) {
-    depth_ = std::make_unique<DepthModel>(load_depth_model(a_.weights, context_));
+  } else if (a_.input.needs_estimate()) {
+    depth_ = std::make_unique<DepthModel>(load_depth_model(depth_weights(a_.weights), context_));
   }
   report_["seconds"]["load_networks"] = watch.seconds();
 }
@@ -71,6 +69,7 @@ void SceneMaker::observe() {
     const View& view = input_.views[i];
     sum += builder_ ? builder_->observe(view, number) : plain.add(view, number);
     if (apart_) apart_->observe(view, number);
+    if (i > 0) input_.views[i].color.release();  // it is in the cloud now
   }
   cloud_ = builder_ ? builder_->cloud() : plain.cloud();
   if (cloud_.empty()) {
@@ -136,18 +135,16 @@ void SceneMaker::make() {
   observe();
   if (!models_) return;
   std::vector<std::filesystem::path> inputs = a_.input.files();
+  if (!a_.support_views.empty()) inputs.emplace_back(a_.support_views);
   inputs.insert(inputs.end(), models_->files().begin(), models_->files().end());
   work_ = std::make_unique<SceneWork>(a_.output, settings_, inputs, a_.resume);
-  try {
-    outpaint_all();
-  } catch (const Interrupted&) {
-    throw Interrupted(kGoOn);
-  }
+  outpaint_all();
 }
 
 void SceneMaker::keep_to_budget(const std::vector<PlannedView>& views) {
-  const std::optional<BudgetOptions> options = a_.point_budget();
+  std::optional<BudgetOptions> options = a_.point_budget();
   if (!options) return;
+  if (models_) options->radius = ViewRendererOptions().detail_radius;
   const Stopwatch watch;
   BudgetReport done;
   const std::size_t before = cloud_.size();

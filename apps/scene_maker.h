@@ -27,6 +27,7 @@ class SceneMaker {
   /// The scene is complete and in its place: what --resume would need is removed.
   void finish();
 
+  bool has_begun() const { return done_ > 0; }  ///< there is something to resume
   const SceneInput& input() const { return input_; }
   const Cloud& cloud() const { return cloud_; }
   const std::vector<ViewPlan>& plan() const { return plan_; }

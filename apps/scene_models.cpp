@@ -22,6 +22,10 @@ fs::path file_of(const std::string& weights, const std::string& name) {
 
 }  // namespace
 
+std::string depth_weights(const std::string& weights) {
+  return file_of(weights, "depth.safetensors").string();
+}
+
 const std::vector<std::string>& selection_names() {
   static const std::vector<std::string> names = {"both", "discriminator", "classifier",
                                                  "likelihood"};
@@ -36,7 +40,7 @@ SceneModels::SceneModels(const std::string& weights, const std::string& selectio
     return read_weights(file);
   };
   const auto wants = [&](const char* name) { return selection == "both" || selection == name; };
-  files_.push_back(file_of(weights, "depth.safetensors"));
+  files_.emplace_back(depth_weights(weights));
   depth_ = std::make_unique<DepthModel>(load_depth_model(files_.front().string(), context));
   autoencoder_ = std::make_unique<models::Autoencoder>(read("vqvae.safetensors"));
   pixel_cnn_ = std::make_unique<models::PixelCnn>(read("pixelcnn.safetensors"));
@@ -51,7 +55,7 @@ SceneModels::SceneModels(const std::string& weights, const std::string& selectio
     scorers_.push_back(outpaint::entropy_scorer(*classifier_));
   }
   if (pixel_cnn_->codes() != autoencoder_->codes()) {
-    throw Error(files_.front().string(),
+    throw Error(file_of(weights, "pixelcnn.safetensors").string(),
                 "the autoencoder has " + std::to_string(autoencoder_->codes()) +
                     " codes, the PixelCNN " + std::to_string(pixel_cnn_->codes()),
                 "networks that were trained together");

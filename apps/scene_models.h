@@ -12,6 +12,9 @@
 
 namespace ps::apps {
 
+/// @return the file of the depth network that --weights names
+std::string depth_weights(const std::string& weights);
+
 /// @return the names that --select takes: both, discriminator, classifier, likelihood
 const std::vector<std::string>& selection_names();
 

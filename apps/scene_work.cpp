@@ -82,6 +82,9 @@ SceneWork::SceneWork(const fs::path& output, const Json& settings,
     throw Error(folder_.string(), "is of a run with other settings, inputs or weights",
                 "the same command, or one without --resume");
   }
+  if (!there && fs::exists(folder_, ignored) && !fs::is_empty(folder_, ignored)) {
+    throw Error(folder_.string(), "is there, and is not of a scene", "another --output");
+  }
   if (!there || !resume) {
     remove_folder(folder_);
     std::error_code failed;

@@ -91,7 +91,11 @@ ScoreTable measure(const EvalConsistencyArguments& a, const ChosenFrames& frames
                    const SceneModels& models, const PerceptualDistance& perceptual,
                    const Context& context) {
   ScoreTable table(columns());
-  const SceneOptions options = a.scene.scene(context);
+  SceneOptions options = a.scene.scene(context);
+  options.outpaint.progress = [](double) {
+    throw_if_interrupted();
+    return true;
+  };
   PlanOptions plan_options = a.scene.plan();
   plan_options.views_per_direction = 2;
   ViewRendererOptions renderer;

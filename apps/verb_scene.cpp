@@ -170,11 +170,8 @@ void write_scene(OutputFolder& folder, const SceneMaker& scene,
   folder.write("preview.png", [&](const Path& file) { write_image(file, preview_of(pictures)); });
 }
 
-void run_scene(const SceneArguments& a, const CLI::App& verb, const Context& context) {
-  const Json settings = settings_of(verb, context);
-  SceneMaker scene(a, settings, context);
-  check_paths(a);
-  note_interrupts();
+void make_scene(const SceneArguments& a, const Json& settings, SceneMaker& scene,
+                const Context& context) {
   const Stopwatch total;
   OutputFolder folder(a.output);
   scene.make();
@@ -204,6 +201,20 @@ void run_scene(const SceneArguments& a, const CLI::App& verb, const Context& con
   end_run(context, report, a.output,
           std::to_string(scene.cloud().size()) + " points, " + std::to_string(pictures.size()) +
               " views");
+}
+
+void run_scene(const SceneArguments& a, const CLI::App& verb, const Context& context) {
+  const Json settings = settings_of(verb, context);
+  SceneMaker scene(a, settings, context);
+  check_paths(a);
+  note_interrupts();
+  try {
+    make_scene(a, settings, scene, context);
+  } catch (const Interrupted&) {
+    if (!scene.has_begun()) throw;
+    throw Interrupted(
+        "interrupted; the same command with --resume goes on with what was outpainted so far");
+  }
 }
 
 }  // namespace

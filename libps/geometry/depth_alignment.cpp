@@ -71,7 +71,7 @@ cv::Mat1f evenness(const cv::Mat1f& logarithm, const Mask& where) {
   cv::erode(low, low, window);
   for_pixels(logarithm.size(), [&](int y, int x) {
     const float edges = (high(y, x) - low(y, x)) / kEdge;
-    high(y, x) = where(y, x) ? 1 / (1 + edges * edges) : 0;
+    high(y, x) = where(y, x) ? 1 + 0 * edges : 0;
   });
   return high;
 }
@@ -92,7 +92,7 @@ cv::Mat1f weights_of_fit(const cv::Mat1f& even, const Mask& both, const Mask& mi
 
 /// How much a visible pixel's log ratio says of what is missing: nothing when the cloud is
 /// much nearer than the fitted estimate, as a thing before a background is.
-[[maybe_unused]] float word(float log_ratio, double spread) {
+float word(float log_ratio, double spread) {
   constexpr double kNearSpreads = 5, kFarSpreads = 8, kLeastCut = 0.1;
   const double cut = std::max(kLeastCut, spread * (log_ratio < 0 ? kNearSpreads : kFarSpreads));
   const double r = log_ratio / cut;
@@ -109,7 +109,7 @@ cv::Mat1f correction(const Logs& logs, const cv::Mat1f& even, const DepthFit& fi
   for_pixels(even.size(), [&](int y, int x) {
     if (!logs.both(y, x)) return;
     value(y, x) = logs.cloud(y, x) - fit(logs.estimate(y, x));
-    weight(y, x) = firm * even(y, x);
+    weight(y, x) = firm * even(y, x) * word(value(y, x), fit.spread);
   });
   return solve_membrane(value, weight);
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -13,8 +12,9 @@ namespace {
 constexpr int kLongSide = 1600;  ///< finer pictures say little more, and take long
 constexpr int kShortSide = 16;   ///< SIFT's coarsest octave needs some pixels
 constexpr int kMostFeatures = 4000;
-const double kContrast = getenv("CON")?atof(getenv("CON")):0.01;  ///< half of OpenCV's: plain walls have little
-const float kRatio = getenv("RATIO")?atof(getenv("RATIO")):0.8f;      ///< Lowe's
+constexpr double kEdge = 20;        ///< twice OpenCV's: rooms are full of edges
+constexpr double kContrast = 0.01;  ///< half of OpenCV's: plain walls have little
+constexpr float kRatio = 0.8f;      ///< Lowe's
 /// OpenCV's SIFT doubles the picture about pixels' corners, and gives places as if about centres.
 constexpr double kSiftShift = 0.25;
 
@@ -40,12 +40,12 @@ Features features_of(const Image& photo) {
   const cv::Mat1b gray = gray_of(photo);
   if (std::min(gray.cols, gray.rows) < kShortSide) return features;
   std::vector<cv::KeyPoint> keypoints;
-  cv::Ptr<cv::Feature2D> sift = cv::SIFT::create(kMostFeatures, 3, kContrast, getenv("EDGE")?atof(getenv("EDGE")):20);
-  if (getenv("TILT")) sift = cv::AffineFeature::create(sift, atoi(getenv("TILT")), 0);
+  const auto sift = cv::SIFT::create(kMostFeatures, 3, kContrast, kEdge);
   sift->detectAndCompute(gray, cv::noArray(), keypoints, features.descriptors);
-  if (!getenv("NOROOT")) for (int i = 0; i < features.descriptors.rows; ++i) {
+  // RootSIFT (Arandjelovic and Zisserman, CVPR 2012).
+  for (int i = 0; i < features.descriptors.rows; ++i) {
     cv::Mat row = features.descriptors.row(i);
-    row /= cv::norm(row, cv::NORM_L1);
+    row /= std::max(cv::norm(row, cv::NORM_L1), 1e-12);
     cv::sqrt(row, row);
   }
   const double sx = static_cast<double>(photo.cols) / gray.cols;
@@ -75,24 +75,7 @@ double pixels_per_feature_pixel(cv::Size photo) {
   return std::max(1.0, static_cast<double>(std::max(photo.width, photo.height)) / kLongSide);
 }
 
-std::vector<PixelMatch> match_photos_(const Image& first, const Image& second);
 std::vector<PixelMatch> match_photos(const Image& first, const Image& second) {
-  char name[200];
-  snprintf(name, 200, "/tmp/pose/cache/%.9g_%.9g_%d_%d_%s", cv::norm(first), cv::norm(second), first.cols, second.cols, getenv("CACHE") ? getenv("CACHE") : "");
-  std::vector<PixelMatch> m;
-  if (FILE* f = fopen(name, "rb")) {
-    PixelMatch x;
-    while (fread(&x, sizeof x, 1, f) == 1) m.push_back(x);
-    fclose(f);
-    return m;
-  }
-  m = match_photos_(first, second);
-  FILE* f = fopen(name, "wb");
-  fwrite(m.data(), sizeof(PixelMatch), m.size(), f);
-  fclose(f);
-  return m;
-}
-std::vector<PixelMatch> match_photos_(const Image& first, const Image& second) {
   const Features a = features_of(first), b = features_of(second);
   std::vector<PixelMatch> matches;
   if (a.places.size() < 2 || b.places.size() < 2) return matches;

@@ -19,8 +19,9 @@ struct Sighting {
 
 struct PoseFit {
   Pose second_from_first = Pose::Identity();
-  double cost = 0;
-  double depth_error = 0;  ///< relative standard deviation of the points' depths that was found
+  double depth_error = 0;  ///< relative standard deviation of the known depths, as found
+  /// Log likelihood of the sightings, over that of matches that lie anywhere in the photo.
+  double log_likelihood = 0;
   std::vector<std::uint8_t> inlier;  ///< 1 for sightings that fit
   std::size_t inliers = 0;
   /// Standard deviations of the pose, as far as sightings err independently of each other.
@@ -28,14 +29,14 @@ struct PoseFit {
   double translation_sigma = 0;  ///< metres
 };
 
-/// @brief Levenberg-Marquardt on all six parameters of the pose, from `start`.
+/// @brief Maximum likelihood of the pose and of the depths' error, from `start`.
 ///
 /// A relative error s of a point's depth moves its projection along the epipolar line by s times a
 /// vector g that vanishes with the baseline (the derivative of the projection by log depth). So a
-/// residual has the covariance pixel_sigma^2 I + depth_error^2 g g^T: across the line pixels count
-/// in full (the epipolar constraint), along it as much as depths are to be trusted (the
-/// perspective-n-point problem). One estimate serves true depths, guessed ones and no baseline at
-/// all. depth_error is estimated along with the pose. Loss: Geman and McClure's (bounded).
+/// true match's residual is normal with covariance pixel_sigma^2 I + depth_error^2 g g^T, and any
+/// other's is even over the photo. Across the line pixels count in full (the epipolar constraint),
+/// along it as much as depths prove to be right (the perspective-n-point problem): one estimate
+/// serves true depths, guessed ones, and no baseline at all.
 /// @param pixel_sigma  pixels of the second photo
 /// @param depth_error  first guess, relative
 PoseFit fit_pose(const std::vector<Sighting>& sightings, const Intrinsics& second_lens,
@@ -48,8 +49,9 @@ bool start_from_points(const std::vector<Sighting>& sightings, const Intrinsics&
                        double tolerance, Pose* second_from_first);
 
 /// @brief A start from the directions alone: OpenCV's five-point RANSAC for the essential matrix
-/// (Nister); the baseline's length is the one that makes the median depth right.
+/// (Nister, PAMI 2004); the baseline's length is the one that makes the median depth right.
 /// @param tolerance  pixels from the epipolar line
+/// @return false when no pose was found
 bool start_from_directions(const std::vector<Sighting>& sightings, const Intrinsics& second_lens,
                            double tolerance, Pose* second_from_first);
 

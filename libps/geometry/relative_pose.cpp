@@ -4,7 +4,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <string>
 #include <vector>
@@ -18,8 +17,10 @@
 namespace ps {
 namespace {
 
-constexpr double kPointTolerance = 8;      ///< pixel sigmas that P3P forgives wrong depths
-constexpr double kDirectionTolerance = 2;  ///< pixel sigmas from an epipolar line
+constexpr double kFeatureSigma = 0.7;      ///< pixels of the picture that features are found in
+constexpr double kDepthError = 0.15;       ///< relative; the fit begins with it
+constexpr double kPointTolerance = 12;     ///< pixel sigmas that P3P forgives wrong depths
+constexpr double kDirectionTolerance = 3;  ///< pixel sigmas from an epipolar line
 constexpr double kSameSurface = 0.4;  ///< log ratio; farther off, one view sees another surface
 /// Standard deviations above which a pose is not determined.
 constexpr double kMostTurn = 0.05;   ///< radians
@@ -67,25 +68,27 @@ Sightings sightings_of(const View& first, const Image& second) {
          d > 0});
     sightings.pixels.push_back(match);
   }
+  if (depths.empty()) {
+    refuse("shares no place with the first at which that has a depth", "more in common");
+  }
+  const double middle = median(depths);
   for (Sighting& s : sightings.list) {
-    if (!s.depth_known) s.point_in_first *= median(depths);
+    if (!s.depth_known) s.point_in_first *= middle;
   }
   return sightings;
 }
 
-PoseFit best_fit(const std::vector<Sighting>& sightings, const Intrinsics& lens, double pixel_sigma,
-                 const SecondPoseOptions& options) {
+PoseFit best_fit(const std::vector<Sighting>& sightings, const Intrinsics& lens,
+                 double pixel_sigma) {
   PoseFit best;
   best.inlier.resize(sightings.size());
   const auto fit_from = [&](const Pose& start) {
-    PoseFit fit = fit_pose(sightings, lens, start, pixel_sigma,
-                           getenv("FIXED") ? atof(getenv("FIXED")) : options.depth_error);
-    if (fit.inliers > best.inliers) best = std::move(fit);
+    PoseFit fit = fit_pose(sightings, lens, start, pixel_sigma, kDepthError);
+    if (fit.log_likelihood > best.log_likelihood) best = std::move(fit);
   };
   Pose start;
   if (start_from_points(sightings, lens, kPointTolerance * pixel_sigma, &start)) fit_from(start);
-  if (best.inliers < std::max(2 * options.least_inliers, sightings.size() / 2) &&
-      start_from_directions(sightings, lens, kDirectionTolerance * pixel_sigma, &start)) {
+  if (start_from_directions(sightings, lens, kDirectionTolerance * pixel_sigma, &start)) {
     fit_from(start);
   }
   return best;
@@ -161,23 +164,31 @@ std::vector<double> ratios_at_inliers(const std::vector<Sighting>& sightings, co
   return ratios;
 }
 
-void compare_depths(const View& first, const View& second, std::vector<double> ratios,
-                    SecondPose* result) {
-  constexpr std::size_t kFew = 5;
-  if (ratios.size() < kFew) {
-    refuse("its depth is unknown where it fits the first photo", "a depth there, or none at all");
-  }
+constexpr std::size_t kFew = 5;
+
+/// The median log ratio of what both see, beginning with a guess of it; others are of two surfaces.
+/// @return the ratios near to it, or those given where there are few
+std::vector<double> settled(const View& first, const View& second, std::vector<double> ratios) {
   const std::vector<DepthRatio> all = depth_ratios(first, second);
-  double middle = median(ratios);
   for (int round = 0; round < 3; ++round) {
+    const double middle = median(ratios);
     std::vector<double> near;
     for (const DepthRatio& r : all) {
       if (std::abs(r.log_ratio - middle) < kSameSurface) near.push_back(r.log_ratio);
     }
     if (near.size() < kFew) break;
     ratios = near;
-    middle = median(ratios);
   }
+  return ratios;
+}
+
+void compare_depths(const View& first, const View& second, std::vector<double> ratios,
+                    SecondPose* result) {
+  if (ratios.size() < kFew) {
+    refuse("its depth is unknown where it fits the first photo", "a depth there, or none at all");
+  }
+  ratios = settled(first, second, std::move(ratios));
+  const double middle = median(ratios);
   for (double& r : ratios) r = std::abs(r - middle);
   result->depth_scale = std::exp(middle);
   result->depth_spread = median(ratios);
@@ -194,7 +205,7 @@ SecondPose find_second_pose(const View& first, const Image& second, const Intrin
       std::max(pixels_per_feature_pixel(second.size()),
                pixels_per_feature_pixel(first.color.size()) *
                    first.intrinsics.footprint_per_metre() / second_lens.footprint_per_metre());
-  const PoseFit fit = best_fit(sightings.list, second_lens, pixel_sigma, options);
+  const PoseFit fit = best_fit(sightings.list, second_lens, kFeatureSigma * pixel_sigma);
   if (fit.inliers < std::max<std::size_t>(options.least_inliers, 1)) {
     refuse(std::to_string(fit.inliers) + " of its " + std::to_string(sightings.list.size()) +
                " matches with the first fit one pose",
@@ -215,6 +226,15 @@ SecondPose find_second_pose(const View& first, const Image& second, const Intrin
     compare_depths(first, view, ratios_at_inliers(sightings.list, fit, view), &result);
   }
   return result;
+}
+
+double depth_scale_between(const View& first, const View& second) {
+  check(first, "first photo");
+  check(second, "second photo");
+  std::vector<double> ratios;
+  for (const DepthRatio& r : depth_ratios(first, second)) ratios.push_back(r.log_ratio);
+  if (ratios.empty()) return 1;
+  return std::exp(median(settled(first, second, std::move(ratios))));
 }
 
 }  // namespace ps

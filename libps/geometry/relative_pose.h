@@ -10,8 +10,6 @@ namespace ps {
 struct SecondPoseOptions {
   std::size_t least_inliers = 25;  ///< matches that must fit one pose
   double least_cover = 0.03;       ///< share of each photo that the inliers must be spread over
-  /// How wrong the first view's depths may be, relative; the search begins with it and finds out.
-  double depth_error = 0.15;
 };
 
 /// @brief Where the second photo was taken, and how its depth goes with the first's.
@@ -40,5 +38,9 @@ struct SecondPose {
 /// determine or that is absurdly far away.
 SecondPose find_second_pose(const View& first, const Image& second, const Intrinsics& second_lens,
                             const Depth& second_depth = {}, const SecondPoseOptions& options = {});
+
+/// @brief By what to multiply the second view's depths so that they agree with the first's: the
+/// median ratio over all that both see; 1 where they see nothing in common.
+double depth_scale_between(const View& first, const View& second);
 
 }  // namespace ps

@@ -28,29 +28,52 @@ std::vector<Turn> turns_of(const std::vector<std::uint32_t>& cells, const Sample
   return turns;
 }
 
-/// @return for each sample the number of the one that speaks for it
-std::vector<std::uint32_t> find_speakers(const std::vector<Sample>& samples, const SampleGrid& grid,
-                                         const std::vector<float>& reach) {
-  std::vector<std::uint32_t> speaker(samples.size(), kLeft);
-  grid.for_each_block([&](const std::vector<std::uint32_t>& cells) {
-    std::vector<std::uint32_t> around;
-    std::uint32_t gathered = UINT32_MAX;
-    for (const Turn& turn : turns_of(cells, grid, reach)) {
-      if (speaker[turn.sample] != kLeft) continue;
-      speaker[turn.sample] = turn.sample;
-      if (turn.reach <= 0) continue;
-      if (turn.cell != gathered) grid.list_around(turn.cell, &around);
-      gathered = turn.cell;
-      const Sample& s = samples[turn.sample];
-      const float most = turn.reach * s.pixel;
-      for (const std::uint32_t i : around) {
-        const float d2 = (samples[i].position - s.position).squaredNorm();
-        if (d2 <= most * most && speaker[i] == kLeft) speaker[i] = turn.sample;
+/// Finds for each sample the number of the one that speaks for it.
+class Speakers {
+ public:
+  Speakers(const std::vector<Sample>& samples, const SampleGrid& grid,
+           const std::vector<float>& reach)
+      : samples_(samples), grid_(grid), reach_(reach), speaker_(samples.size(), kLeft) {}
+
+  std::vector<std::uint32_t> find() {
+    // What shows detail comes first everywhere, so that nobody of longer reach takes it.
+    const float least = *std::min_element(reach_.begin(), reach_.end());
+    run([&](float reach) { return reach <= least; });
+    run([&](float reach) { return reach > least; });
+    return std::move(speaker_);
+  }
+
+ private:
+  template <typename Chosen>
+  void run(const Chosen& chosen) {
+    grid_.for_each_block([&](const std::vector<std::uint32_t>& cells) {
+      std::vector<std::uint32_t> around;
+      std::uint32_t gathered = UINT32_MAX;
+      for (const Turn& turn : turns_of(cells, grid_, reach_)) {
+        if (speaker_[turn.sample] != kLeft || !chosen(turn.reach)) continue;
+        speaker_[turn.sample] = turn.sample;
+        if (turn.reach <= 0) continue;
+        if (turn.cell != gathered) grid_.list_around(turn.cell, &around);
+        gathered = turn.cell;
+        take_around(turn, around);
       }
+    });
+  }
+
+  void take_around(const Turn& turn, const std::vector<std::uint32_t>& around) {
+    const Sample& s = samples_[turn.sample];
+    const float most = turn.reach * s.pixel;
+    for (const std::uint32_t i : around) {
+      const float d2 = (samples_[i].position - s.position).squaredNorm();
+      if (d2 <= most * most && speaker_[i] == kLeft) speaker_[i] = turn.sample;
     }
-  });
-  return speaker;
-}
+  }
+
+  const std::vector<Sample>& samples_;
+  const SampleGrid& grid_;
+  const std::vector<float>& reach_;
+  std::vector<std::uint32_t> speaker_;
+};
 
 void take(Sample* speaker, const Sample& other) {
   speaker->weight += other.weight;
@@ -66,7 +89,8 @@ void take(Sample* speaker, const Sample& other) {
 
 std::vector<Sample> merged(const std::vector<Sample>& samples, const SampleGrid& grid,
                            const std::vector<float>& reach) {
-  const std::vector<std::uint32_t> speaker = find_speakers(samples, grid, reach);
+  if (samples.empty()) return {};
+  const std::vector<std::uint32_t> speaker = Speakers(samples, grid, reach).find();
   std::vector<std::uint32_t> place(samples.size());
   std::vector<Sample> result;
   for (std::size_t i = 0; i < samples.size(); ++i) {

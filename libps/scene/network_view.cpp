@@ -35,9 +35,9 @@ Intrinsics network_lens(const Intrinsics& lens) {
 }
 
 Image resampled(const Image& picture, const Intrinsics& seen, const Intrinsics& lens) {
-  const double scale = seen.fx / lens.fx;
-  const cv::Matx23d seen_from_lens(scale, 0, seen.cx - lens.cx * scale,  //
-                                   0, scale, seen.cy - lens.cy * scale);
+  const double sx = seen.fx / lens.fx, sy = seen.fy / lens.fy;
+  const cv::Matx23d seen_from_lens(sx, 0, seen.cx - lens.cx * sx,  //
+                                   0, sy, seen.cy - lens.cy * sy);
   Image out;
   cv::warpAffine(picture, out, seen_from_lens, {lens.width, lens.height},
                  cv::INTER_CUBIC | cv::WARP_INVERSE_MAP, cv::BORDER_REPLICATE);

@@ -120,11 +120,10 @@ void find_pixels(const std::vector<Frustum>& frusta, Sample* begin, Sample* end)
 
 Sample sample_of(const Point& p, std::uint32_t number) {
   const float footprint = std::isfinite(p.footprint) ? p.footprint : 0;
-  Sample sample = {};
+  Sample sample;
   sample.position = p.getVector3fMap();
   sample.color = Eigen::Vector3f(p.r, p.g, p.b);
   sample.pixel = kNever;
-  sample.weight = 1;
   sample.area = footprint * footprint;
   sample.footprint = footprint;
   sample.point = number;

@@ -12,15 +12,15 @@ namespace ps {
 
 /// One point, or one that speaks for several.
 struct Sample {
-  Eigen::Vector3f position;  ///< world, metres
-  Eigen::Vector3f color;     ///< mean r, g, b, 0 to 255
-  float pixel;               ///< metres that a pixel covers there, where it covers least
-  float weight;              ///< how many points it speaks for
-  float area;                ///< square metres: the sum of the squares of their footprints
-  float footprint;           ///< metres, the greatest of theirs
-  float spread;              ///< metres to the farthest of them
-  std::uint32_t point;       ///< its number in the cloud
-  std::uint8_t origin;
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< world, metres
+  Eigen::Vector3f color = Eigen::Vector3f::Zero();     ///< mean r, g, b, 0 to 255
+  float pixel = 0;          ///< metres that a pixel covers there, where it covers least
+  float weight = 1;         ///< how many points it speaks for
+  float area = 0;           ///< square metres: the sum of the squares of their footprints
+  float footprint = 0;      ///< metres, the greatest of theirs
+  float spread = 0;         ///< metres to the farthest of them
+  std::uint32_t point = 0;  ///< its number in the cloud
+  std::uint8_t origin = 0;
 };
 
 /// @brief Finds for each finite point the planned view that shows it finest, in whose image, grown

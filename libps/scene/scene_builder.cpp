@@ -74,10 +74,11 @@ const Cloud& SceneBuilder::cloud() {
 }
 
 AddReport SceneBuilder::observe(const View& view, std::uint16_t number) {
+  check(view, "view " + std::to_string(number));
   const View large = enlarged(view);
   const AddReport report = impl_->cloud.add(large, number, Origin::observed);
   impl_->changed = true;
-  impl_->observed.push_back({{}, large.depth, large.intrinsics, large.world_from_cam});
+  impl_->observed.push_back({{}, large.depth.clone(), large.intrinsics, large.world_from_cam});
   return report;
 }
 

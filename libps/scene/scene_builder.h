@@ -67,8 +67,8 @@ class SceneBuilder {
   AddReport observe(const View& view, std::uint16_t number);
 
   /// @brief Outpaints a view and makes its depth continue the cloud; the cloud stays as it is.
-  /// A function of (networks, options, cloud, pose, number). Where nothing is missing no network is
-  /// run and no pixel is to be added.
+  /// A function of (networks, options, what was observed, cloud, pose, number). Where nothing is
+  /// missing no network is run and no pixel is to be added.
   /// @return a view without colour when options.outpaint.progress stopped it
   SupportView outpaint(const Pose& world_from_cam, std::uint16_t number);
 

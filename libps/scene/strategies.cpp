@@ -7,8 +7,7 @@ namespace ps {
 
 ShownScene show_scene(const View& input, const std::vector<ViewPlan>& plan, Strategy strategy,
                       const SceneNetworks& networks, const SceneOptions& options,
-                      const ViewRendererOptions& renderer_options,
-                      const MakeSupport& make_support) {
+                      const ViewRendererOptions& renderer_options) {
   ShownScene shown = {SceneBuilder(networks, input.intrinsics, options), {}};
   SceneBuilder& scene = shown.scene;
   scene.observe(input, 0);
@@ -17,8 +16,7 @@ ShownScene show_scene(const View& input, const std::vector<ViewPlan>& plan, Stra
     if (!plan[i].outpaint) continue;
     const auto number = static_cast<std::uint16_t>(i + 1);
     const Pose& pose = plan[i].world_from_cam;
-    const SupportView support =
-        make_support ? make_support(scene, pose, number) : scene.outpaint(pose, number);
+    const SupportView support = scene.outpaint(pose, number);
     shown.views.back().report = support.report;
     if (strategy != Strategy::support) shown.views.back().image = support.view.color;
     if (strategy != Strategy::independent) scene.add(support, number);

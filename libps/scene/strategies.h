@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
 #include <vector>
 
 #include "libps/scene/scene_builder.h"
@@ -22,17 +21,13 @@ struct ShownScene {
   std::vector<ShownView> views;  ///< in the order of the plan
 };
 
-/// How a view is outpainted, where it is not by SceneBuilder::outpaint(): for comparisons.
-using MakeSupport = std::function<SupportView(SceneBuilder&, const Pose&, std::uint16_t number)>;
-
 /// @brief Makes all views of a plan by its strategy (PixelSynth, section 4.3), from one input:
 /// `support` splats and refines the accumulated cloud into each; the others show what was
 /// outpainted in each.
 /// @param plan      of plan_scene() from the input's pose
 /// @param strategy  that the plan was made for
-/// @param make_support  may be empty
 ShownScene show_scene(const View& input, const std::vector<ViewPlan>& plan, Strategy strategy,
                       const SceneNetworks& networks, const SceneOptions& options,
-                      const ViewRendererOptions& renderer, const MakeSupport& make_support = {});
+                      const ViewRendererOptions& renderer);
 
 }  // namespace ps

@@ -154,11 +154,12 @@ class Looker {
     const Neighbour* near = around.near(s, reach, &count);
     for (const Neighbour* n = near; n != near + count; ++n) {
       const Shown& there = shown_[n->sample];
-      const bool apart =
-          there.apart || std::fabs(here.normal.dot(there.position - here.position)) > flat;
+      if (there.apart && !here.apart) continue;  // speaks for itself, whatever is around it
+      const bool bent = std::fabs(here.normal.dot(there.position - here.position)) > flat;
       const float most = (there.color - here.color).cwiseAbs().maxCoeff();
-      const std::uint8_t one = apart ? Surroundings::kApart
-                                     : static_cast<std::uint8_t>(std::ceil(std::min(254.f, most)));
+      const std::uint8_t one = bent || here.apart
+                                   ? Surroundings::kApart
+                                   : static_cast<std::uint8_t>(std::ceil(std::min(254.f, most)));
       const int step = static_cast<int>(n->distance * Surroundings::kSteps / reach);
       auto& worst = difference[std::min(step, Surroundings::kSteps - 1)];
       worst = std::max(worst, one);

@@ -110,7 +110,7 @@ void write_photos(const fs::path& dir) {
   write_depth(dir / "square.png", view.depth(cv::Rect(0, 0, kHeight, kHeight)).clone());
   write_depth(dir / "tiny.png", Depth(1, 1, 2.0f));
   write_depth(dir / "zero.png", Depth::zeros(kHeight, kWidth));
-  write_depth(dir / "flat.png", Depth(kHeight, kWidth, 2.5f));
+  write_depth(dir / "depth_flat.png", Depth(kHeight, kWidth, 2.5f));
   write_intrinsics(dir / "lens.json", view.intrinsics);
   write_intrinsics(dir / "square_lens.json", intrinsics_from_fov(64, 64, 60));
 }

@@ -18,7 +18,7 @@ app_test(eval_depth_scores_a_folder_and_writes_table_report_and_samples [=[
   grep -q '"seed": 0' e.json]=])
 app_test(eval_depth_of_true_depths_by_a_constant_scene_is_right_for_the_constant [=[
   cp -r $S/walk w
-  for f in w/depth/*; do cp $S/flat.png $f; done
+  for f in w/depth/*; do cp $S/depth_flat.png $f; done
   works eval depth w --weights $S/depth.safetensors -o e.json
   grep -q '^constant,AbsRel raw,0,0,0,7$' e.csv
   grep -q '^constant,delta_1 raw,1,1,1,7$' e.csv

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// bench_budget DIR: what thinning a cloud to its budget costs in the pictures. Prints CSV, a line
-// for each tolerance, and one for a voxel grid with as many points.
+// bench_budget DIR: what thinning a cloud to the budget of its cameras costs in their pictures.
+// Prints CSV: a line for each tolerance, and one for a voxel grid of as many points.
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <ctime>
 #include <iostream>
+#include <limits>
 #include <map>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -27,53 +25,46 @@ namespace {
 struct Options {
   std::string folder;
   std::size_t every = 12;
-  std::size_t frames = 1000000;
+  std::size_t frames = std::numeric_limits<std::size_t>::max();
   bool accumulate = false;
-  bool no_voxels = false;
-  std::vector<double> tolerances = {0, 0.01, 0.02, 0.04, 0.06, 0.1, 0.2, 1};
+  bool voxels = true;
+  std::vector<double> tolerances = {0,    0.005, 0.01, 0.015, 0.02, 0.03,
+                                    0.05, 0.07,  0.1,  0.15,  0.2,  1};
   BudgetOptions budget;
   int threads = 0;
 };
 
-/// A camera whose picture is known.
+/// A planned view whose photo is there.
 struct Shot {
   PlannedView view;
   Image photo;
-  Mask known;
-  Image full;  ///< of the whole cloud
+  Splat whole;  ///< of the whole cloud
+  Mask known;   ///< where that hits and the photo's depth is known
 };
 
-Image render(const Cloud& cloud, const PlannedView& view, Mask* hit = nullptr) {
+Splat draw(const Cloud& cloud, const PlannedView& view) {
   SplatOptions options;
   options.renormalise = true;
-  const Splat picture = splat(cloud, view.intrinsics, view.world_from_cam, options);
-  if (hit) *hit = picture.hit;
-  return picture.color;
+  return splat(cloud, view.intrinsics, view.world_from_cam, options);
 }
 
-/// Each cell's points become their mean: what pcl::VoxelGrid does, without its limit on cells.
+/// Means of cubes: what pcl::VoxelGrid does, without its limit on their number.
 Cloud voxel_grid(const Cloud& cloud, double leaf) {
-  struct Sum {
-    Eigen::Vector3d position = Eigen::Vector3d::Zero(), color = Eigen::Vector3d::Zero();
-    double count = 0;
-  };
+  using Sum = Eigen::Matrix<double, 7, 1>;  // position, colour, count
   std::map<std::tuple<int, int, int>, Sum> cells;
   for (const Point& p : cloud) {
-    const Eigen::Vector3d at = p.getVector3fMap().cast<double>();
-    const auto step = [&](double x) { return static_cast<int>(std::floor(x / leaf)); };
-    Sum& sum = cells[{step(at.x()), step(at.y()), step(at.z())}];
-    sum.position += at;
-    sum.color += Eigen::Vector3d(p.r, p.g, p.b);
-    sum.count += 1;
+    const auto step = [&](float x) { return static_cast<int>(std::floor(x / leaf)); };
+    Sum& sum = cells.try_emplace({step(p.x), step(p.y), step(p.z)}, Sum::Zero()).first->second;
+    sum += (Sum() << p.x, p.y, p.z, p.r, p.g, p.b, 1).finished();
   }
   Cloud result;
   for (const auto& [key, sum] : cells) {
+    const Sum mean = sum / sum[6];
     Point p;
-    p.getVector3fMap() = (sum.position / sum.count).cast<float>();
-    const Eigen::Vector3d color = sum.color / sum.count;
-    p.r = static_cast<std::uint8_t>(std::lround(color.x()));
-    p.g = static_cast<std::uint8_t>(std::lround(color.y()));
-    p.b = static_cast<std::uint8_t>(std::lround(color.z()));
+    p.getVector3fMap() = mean.head<3>().cast<float>();
+    p.r = static_cast<std::uint8_t>(std::lround(mean[3]));
+    p.g = static_cast<std::uint8_t>(std::lround(mean[4]));
+    p.b = static_cast<std::uint8_t>(std::lround(mean[5]));
     result.push_back(p);
   }
   return result;
@@ -81,29 +72,32 @@ Cloud voxel_grid(const Cloud& cloud, double leaf) {
 
 /// @return the voxel grid of about so many points (within 1 %)
 Cloud voxel_grid_of(const Cloud& cloud, std::size_t points) {
-  double low = 1e-4, high = 1;
+  double leaf = 0.01;
   Cloud result;
-  for (int i = 0; i < 16; ++i) {
-    const double leaf = std::sqrt(low * high);
+  for (int round = 0; round < 10; ++round) {
     result = voxel_grid(cloud, leaf);
     const double ratio = static_cast<double>(result.size()) / static_cast<double>(points);
     if (std::abs(ratio - 1) < 0.01) break;
-    (ratio > 1 ? low : high) = leaf;
+    leaf *= std::sqrt(ratio);  // of a surface's cells
   }
   return result;
 }
 
-std::vector<Shot> planned_shots(const RgbdFolder& folder, const Options& o) {
+/// The cameras of the frames that make the cloud, and one between each two.
+std::vector<Shot> planned_shots(const RgbdFolder& folder, const Cloud& cloud, const Options& o) {
   std::vector<Shot> shots;
   const std::size_t step = std::max<std::size_t>(1, o.every / 2);
   for (std::size_t i = 0; i < folder.frames.size(); i += step) {
     const View view = load_frame(folder, folder.frames[i]);
-    shots.push_back({{view.intrinsics, view.world_from_cam}, view.color, view.depth > 0, {}});
+    Shot shot = {{view.intrinsics, view.world_from_cam}, view.color, {}, {}};
+    shot.whole = draw(cloud, shot.view);
+    shot.known = shot.whole.hit & (view.depth > 0);
+    shots.push_back(shot);
   }
   return shots;
 }
 
-Cloud full_cloud(const RgbdFolder& folder, const Options& o) {
+Cloud whole_cloud(const RgbdFolder& folder, const Options& o) {
   std::vector<RgbdFrame> frames;
   for (std::size_t i = 0; i < folder.frames.size(); i += o.every)
     frames.push_back(folder.frames[i]);
@@ -117,76 +111,69 @@ Cloud full_cloud(const RgbdFolder& folder, const Options& o) {
   return cloud;
 }
 
+/// Means over the views; dB.
 struct Scores {
-  double full = 0, photos = 0, worst = 1e9, lost = 0;
+  double whole = 0;   ///< PSNR against the whole cloud
+  double worst = 99;  ///< of a view
+  double photos = 0;  ///< PSNR against the photos
+  double lost = 0;    ///< share of the pixels that only the whole cloud hits
 };
 
 Scores score(const Cloud& cloud, const std::vector<Shot>& shots) {
-  Scores s;
-  const double n = static_cast<double>(shots.size());
+  Scores scores;
+  const auto views = static_cast<double>(shots.size());
   for (const Shot& shot : shots) {
-    Mask hit;
-    const Image picture = render(cloud, shot.view, &hit);
-    const double against_full =
-        shot.full.empty() ? 99 : std::min(99., psnr(picture, shot.full, shot.known));
-    s.full += against_full / n;
-    if (std::getenv("DUMP") && against_full < 26) {
-      static int k = 0;
-      cv::Mat both, a = (picture * 255), b = (shot.full * 255), c = shot.photo * 255,
-                    d = cv::abs(picture - shot.full) * 1024;
-      d.setTo(cv::Scalar::all(0), shot.known == 0);
-      cv::Mat top, bottom;
-      cv::hconcat(std::vector<cv::Mat>{a, b}, top);
-      cv::hconcat(std::vector<cv::Mat>{c, d}, bottom);
-      cv::vconcat(top, bottom, both);
-      cv::cvtColor(both, both, cv::COLOR_RGB2BGR);
-      cv::imwrite("/tmp/budget/dump" + std::to_string(k++) + ".png", both);
-      std::fprintf(stderr, "dump %.2f\n", against_full);
-    }
-    s.worst = std::min(s.worst, against_full);
-    s.photos += psnr(picture, shot.photo, shot.known) / n;
-    s.lost += static_cast<double>(cv::countNonZero(shot.known & (hit == 0))) /
-              cv::countNonZero(shot.known) / n;
+    const Splat picture = draw(cloud, shot.view);
+    const double whole = std::fmin(99, psnr(picture.color, shot.whole.color, shot.known));
+    scores.whole += whole / views;
+    scores.worst = std::fmin(scores.worst, whole);
+    scores.photos += psnr(picture.color, shot.photo, shot.known) / views;
+    scores.lost += static_cast<double>(cv::countNonZero(shot.known & (picture.hit == 0))) /
+                   cv::countNonZero(shot.known) / views;
   }
-  return s;
+  return scores;
 }
 
-void print(const char* method, double tolerance, std::size_t points, std::size_t full,
-           const Scores& s, double base, double seconds) {
-  std::printf("%s,%g,%zu,%.4f,%.2f,%.2f,%.3f,%+.3f,%.5f,%.2f\n", method, tolerance, points,
-              static_cast<double>(points) / static_cast<double>(full), s.full, s.worst, s.photos,
-              s.photos - base, s.lost, seconds);
-  std::fflush(stdout);
-}
+class Table {
+ public:
+  Table(const Cloud& cloud, const std::vector<Shot>& shots)
+      : shots_(shots), points_(cloud.size()), photos_(score(cloud, shots).photos) {
+    std::puts(
+        "method,tolerance,points,share,psnr_whole,worst_whole,psnr_photos,change,lost,seconds");
+    add("whole", 0, cloud, 0);
+  }
+
+  void add(const char* method, double tolerance, const Cloud& cloud, double seconds) const {
+    const Scores s = score(cloud, shots_);
+    std::printf("%s,%g,%zu,%.4f,%.2f,%.2f,%.3f,%+.3f,%.5f,%.2f\n", method, tolerance, cloud.size(),
+                static_cast<double>(cloud.size()) / static_cast<double>(points_), s.whole, s.worst,
+                s.photos, s.photos - photos_, s.lost, seconds);
+    std::fflush(stdout);
+  }
+
+ private:
+  const std::vector<Shot>& shots_;
+  std::size_t points_;
+  double photos_;
+};
 
 void run(const Options& o) {
   set_threads(o.threads);
   RgbdFolder folder = open_rgbd_folder(o.folder);
   folder.frames.resize(std::min(folder.frames.size(), o.frames));
-  const Cloud cloud = full_cloud(folder, o);
-  std::vector<Shot> shots = planned_shots(folder, o);
+  const Cloud cloud = whole_cloud(folder, o);
+  const std::vector<Shot> shots = planned_shots(folder, cloud, o);
   std::vector<PlannedView> views;
-  for (Shot& shot : shots) {
-    Mask hit;
-    shot.full = render(cloud, shot.view, &hit);
-    shot.known &= hit;
-    shot.known.setTo(1, shot.known);
-    views.push_back(shot.view);
-  }
-  std::printf(
-      "method,tolerance,points,share,psnr_full,worst_full,psnr_photos,change,lost,seconds\n");
-  const Scores base = score(cloud, shots);
-  print("full", 0, cloud.size(), cloud.size(), base, base.photos, 0);
+  for (const Shot& shot : shots) views.push_back(shot.view);
+  const Table table(cloud, shots);
   for (const double tolerance : o.tolerances) {
     BudgetOptions budget = o.budget;
     budget.tolerance = tolerance;
-    const double start = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+    const auto start = std::chrono::steady_clock::now();
     const Cloud thin = thinned(cloud, views, budget);
-    const double seconds = static_cast<double>(std::clock()) / CLOCKS_PER_SEC - start;
-    print("budget", tolerance, thin.size(), cloud.size(), score(thin, shots), base.photos, seconds);
-    if (o.no_voxels) continue;
-    const Cloud voxels = voxel_grid_of(cloud, thin.size());
-    print("voxels", tolerance, voxels.size(), cloud.size(), score(voxels, shots), base.photos, 0);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    table.add("budget", tolerance, thin, seconds.count());
+    if (o.voxels) table.add("voxels", tolerance, voxel_grid_of(cloud, thin.size()), 0);
   }
 }
 
@@ -195,16 +182,17 @@ void run(const Options& o) {
 
 int main(int argc, char** argv) {
   ps::Options o;
-  CLI::App app{"Thins a fused RGB-D folder to the budget of its own cameras"};
-  app.add_option("folder", o.folder)->required();
-  app.add_option("--every", o.every, "fuse every Nth frame; planned are those and one in between");
+  CLI::App app{"Thins the cloud of an RGB-D folder to the budget of its own cameras"};
+  app.add_option("folder", o.folder, "RGB-D folder")->required();
+  app.add_option("--every", o.every, "the cloud is of every N-th frame")
+      ->check(CLI::Range(1, 9999));
   app.add_option("--frames", o.frames, "only the first so many frames");
   app.add_option("--tolerances", o.tolerances);
   app.add_option("--pixels", o.budget.pixels);
   app.add_option("--spacing", o.budget.spacing);
-  app.add_option("--threads", o.threads);
-  app.add_flag("--accumulate", o.accumulate, "lift all frames instead of fusing them");
-  app.add_flag("--no-voxels", o.no_voxels);
+  app.add_option("--threads", o.threads, "0 = one for each core");
+  app.add_flag("--accumulate", o.accumulate, "all pixels of the frames, instead of fusing them");
+  app.add_flag("!--no-voxels", o.voxels, "no comparison with voxel grids");
   CLI11_PARSE(app, argc, argv);
   try {
     ps::run(o);
