@@ -11,7 +11,7 @@
 namespace ps::train {
 namespace {
 
-constexpr int kPublishedWidth = 80, kShippedWidth = 48;
+constexpr int kPublishedWidth = 80, kShippedWidth = 32;
 constexpr int kCompletions = 8;        ///< on a sheet
 constexpr double kKnownWeight = 0.25;  ///< of cells that are seen anyway, in the loss
 
@@ -73,8 +73,14 @@ class PixelCnnStage : public Stage {
     const auto bits = [&](const Tensor& probability) {
       return -(torch::log2(probability.clamp_min(1e-12)) * unseen).sum().item<double>() / cells;
     };
-    const Tensor given =
-        torch::softmax(net_.forward(codes, batch.order), 1).gather(1, flat.unsqueeze(1)).squeeze(1);
+    const auto given = [&](const Tensor& known) {
+      return torch::softmax(net_.forward(known, batch.order), 1)
+          .gather(1, flat.unsqueeze(1))
+          .squeeze(1);
+    };
+    // What the program has: codes of the projection, whose cells at the border are partly empty.
+    const Tensor projected =
+        torch::where(batch.unseen.view_as(codes) > 0, codes, codes_of(batch.splat));
     const Tensor& counts = net_.parameters["code_counts"];
     const Tensor unigram = (counts / counts.sum()).index_select(0, flat);
     const Tensor copied =
@@ -83,7 +89,8 @@ class PixelCnnStage : public Stage {
     double copy_bits = 1e9;
     for (double p = .05; p < 1; p += .05)
       copy_bits = std::min(copy_bits, bits(p * copied + (1 - p) * unigram));
-    return {{"missing_bits", bits(given)},
+    return {{"missing_bits", bits(given(codes))},
+            {"missing_bits_projected", bits(given(projected))},
             {"unigram_bits", bits(unigram)},
             {"copy_bits", copy_bits},
             {"missing_share", unseen.mean().item<double>()}};

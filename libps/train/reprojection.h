@@ -25,9 +25,10 @@ Warped warp(const Tensor& depth, const Tensor& partner, const Tensor& lens,
 /// @param a, b  [n, 3, h, w] in [-1,1]   @return [n, 1, h, w], 0 = the same, at most about 1
 Tensor photometric_error(const Tensor& a, const Tensor& b);
 
-/// @brief How badly a depth explains the partner, at four sizes of picture, so that a view that is
-/// off by many pixels is pulled the right way too; and how rough the depth is where the picture is
-/// not. Examples without pose give 0.
+/// @brief How badly a depth explains the partner: the photometric error of what falls into it, at
+/// three sizes of picture; how far the depth is from the best of a sweep of planes, where that
+/// explains a pixel clearly better, which pulls the right way from any distance; and how rough the
+/// depth is where the picture is not. Examples without pose give 0.
 /// @param batch  with partners
 /// @param depth  [n, 1, s, s] canonical metres of batch.plain
 /// @return [n]

@@ -9,6 +9,7 @@ app_test(train_needs_a_stage_and_its_folders [=[
   fails 2 'either --rooms or --rgbd' train data -o d
   fails 2 'either --rooms or --rgbd' train data -o d --rooms 1 --rgbd $S/walk
   fails 2 'poses-only.*rgbd' train data -o d --rooms 1 --poses-only]=])
+app_test(train_stages_have_help [=[for v in data all vqvae depth refine pixelcnn classifier; do works train $v --help; prints Options; done]=])
 app_test(train_options_are_checked [=[
   fails 2 "width" train depth --data d -o r --width wide
   fails 2 "width" train all --data d -o r --width 513
