@@ -71,7 +71,7 @@ cv::Mat1f evenness(const cv::Mat1f& logarithm, const Mask& where) {
   cv::erode(low, low, window);
   for_pixels(logarithm.size(), [&](int y, int x) {
     const float edges = (high(y, x) - low(y, x)) / kEdge;
-    high(y, x) = where(y, x) ? 1 + 0 * edges : 0;
+    high(y, x) = where(y, x) ? 1 / (1 + edges * edges) : 0;
   });
   return high;
 }

@@ -46,8 +46,9 @@ struct AlignedDepth {
 /// two cannot agree, the cloud's depth alone is continued, harmonic in 1/z: it stays between the
 /// least and the greatest visible depth. Where nothing is visible, the estimate is taken as it is.
 ///
-/// @param estimate     any unit; depth unknown to be of the cloud's scale
-/// @param cloud_depth  metres, as Splat::expected_depth; counts where visible and not missing
+/// @param estimate     any unit
+/// @param cloud_depth  metres, as Splat::expected_depth; counts where visible and not missing. Best
+/// of a splat of radius 1 where that hits: wide splats see slanted surfaces too near
 /// @param visible      not 0 where the cloud is seen
 /// @param missing      not 0 where the estimate is wanted
 /// Depths that are not within 1e-9 to 1e9 are unknown, so zeros, NaN and infinity are. The same

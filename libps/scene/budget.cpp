@@ -17,6 +17,7 @@ namespace ps {
 namespace {
 
 constexpr std::size_t kPictures = 8;  ///< that a target of PSNR is judged by
+constexpr int kHalvings = 3;          ///< of the distance within which all may merge
 
 void check(const std::vector<PlannedView>& views, const BudgetOptions& o) {
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -95,48 +96,76 @@ Cloud cloud_of(const Cloud& cloud, const std::vector<Sample>& samples,
   return result;
 }
 
-/// @brief Bisects whole tolerances, as colours differ by whole numbers.
-/// @return what was thinned most of all that are near enough to `pictures`; without a tolerance
-/// that is, the samples as they are
-std::vector<Sample> thinned_while_alike(const Thinner& thinner, const Pictures& pictures,
-                                        double psnr, const std::vector<Sample>& seen,
-                                        const Cloud& cloud,
-                                        const std::vector<std::uint32_t>& others,
-                                        BudgetReport* report) {
-  std::vector<Sample> best = seen;
-  int low = -1, high = Surroundings::kApart;
-  while (high - low > 1) {
-    const int middle = (low + high) / 2;
-    std::vector<Sample> samples = thinner.at(middle);
-    const bool alike = pictures.worst_psnr(cloud_of(cloud, samples, others)) >= psnr;
-    (alike ? low : high) = middle;
-    if (alike) best = std::move(samples);
-  }
-  report->tolerance = std::max(low, 0) / 255.0;
-  return best;
-}
+/// Finds thinned clouds whose pictures are near enough to those of the whole.
+class Search {
+ public:
+  /// @param seen    samples that may be merged
+  /// @param others  numbers of points that stay as they are
+  Search(const Cloud& cloud, const std::vector<Sample>& seen,
+         const std::vector<std::uint32_t>& others, const BudgetOptions& options,
+         BudgetReport* report)
+      : cloud_(cloud), seen_(seen), others_(others), options_(options), report_(*report) {}
 
-/// Thins what views see to the options' targets.
-Cloud thinned_to_targets(const Cloud& cloud, const std::vector<PlannedView>& views,
-                         const BudgetOptions& o, const std::vector<Sample>& seen,
-                         const std::vector<std::uint32_t>& others, BudgetReport* report) {
-  const Thinner thinner(seen, o);
-  const std::size_t most = o.points - std::min(o.points, others.size());
-  if (o.psnr <= 0) {
-    report->tolerance = o.tolerance;
-    return cloud_of(cloud,
-                    o.points > 0 ? thinner.down_to(most, report)
-                                 : thinner.at(std::min(255 * o.tolerance, Thinner::kAllColors)),
-                    others);
+  Cloud run(const std::vector<PlannedView>& views) const {
+    const Thinner thinner(seen_, options_);
+    if (options_.psnr <= 0 && options_.points == 0) {
+      report_.tolerance = options_.tolerance;
+      return cloud_of(cloud_, thinner.at(std::min(255 * options_.tolerance, Thinner::kAllColors)),
+                      others_);
+    }
+    const std::size_t most = options_.points - std::min(options_.points, others_.size());
+    if (options_.psnr <= 0) return cloud_of(cloud_, thinner.down_to(most, &report_), others_);
+    const Pictures pictures(cloud_, views, options_.radius);
+    std::vector<Sample> samples = thinned_while_alike(thinner, pictures);
+    if (options_.points > 0 && samples.size() > most) samples = thinner.down_to(most, &report_);
+    Cloud result = cloud_of(cloud_, samples, others_);
+    report_.psnr = pictures.worst_psnr(result);
+    return result;
   }
-  const Pictures pictures(cloud, views, o.radius);
-  std::vector<Sample> samples =
-      thinned_while_alike(thinner, pictures, o.psnr, seen, cloud, others, report);
-  if (o.points > 0 && samples.size() > most) samples = thinner.down_to(most, report);
-  Cloud result = cloud_of(cloud, samples, others);
-  report->psnr = pictures.worst_psnr(result);
-  return result;
-}
+
+ private:
+  /// @return the thinnest that is alike, or what is seen as it is
+  std::vector<Sample> thinned_while_alike(const Thinner& thinner, const Pictures& pictures) const {
+    std::vector<Sample> best = thinner.at(0);
+    if (alike(best, pictures)) {
+      bisect(thinner, pictures, &best);
+      return best;
+    }
+    // Even points half a pixel apart are needed; those nearer to each other may not be.
+    BudgetOptions finer = options_;
+    report_.tolerance = 0;
+    for (int halving = 0; halving < kHalvings; ++halving) {
+      report_.pixels = finer.pixels /= 2;
+      best = Thinner(seen_, finer).at(0);
+      if (alike(best, pictures)) return best;
+    }
+    report_.pixels = 0;
+    return seen_;
+  }
+
+  /// Over whole tolerances, as colours differ by whole numbers; `best` is alike, at 0.
+  void bisect(const Thinner& thinner, const Pictures& pictures, std::vector<Sample>* best) const {
+    int low = 0, high = Surroundings::kApart;
+    while (high - low > 1) {
+      const int middle = (low + high) / 2;
+      std::vector<Sample> samples = thinner.at(middle);
+      const bool is_alike = alike(samples, pictures);
+      (is_alike ? low : high) = middle;
+      if (is_alike) *best = std::move(samples);
+    }
+    report_.tolerance = low / 255.0;
+  }
+
+  bool alike(const std::vector<Sample>& samples, const Pictures& pictures) const {
+    return pictures.worst_psnr(cloud_of(cloud_, samples, others_)) >= options_.psnr;
+  }
+
+  const Cloud& cloud_;
+  const std::vector<Sample>& seen_;
+  const std::vector<std::uint32_t>& others_;
+  const BudgetOptions& options_;
+  BudgetReport& report_;
+};
 
 }  // namespace
 
@@ -155,7 +184,7 @@ Cloud thinned(const Cloud& cloud, const std::vector<PlannedView>& views,
   if (options.drop_unseen && !views.empty()) others.clear();
   const std::size_t finite = seen.size() + others.size();
   Cloud result = seen.empty() ? cloud_of(cloud, {}, others)
-                              : thinned_to_targets(cloud, views, options, seen, others, &told);
+                              : Search(cloud, seen, others, options, &told).run(views);
   told.points = result.size();
   told.merged = finite - result.size();
   return result;

@@ -45,8 +45,8 @@ struct BudgetReport {
   std::size_t merged = 0;      ///< into others
   std::size_t points = 0;      ///< left
   double tolerance = 0;        ///< that was used
-  /// Pixels within which points were merged across edges too, as a target asked for very few; at
-  /// least BudgetOptions::pixels.
+  /// Within which points were merged whatever they show: BudgetOptions::pixels, but more where a
+  /// target of points, or less where one of PSNR could not be met else; 0 when none were.
   double pixels = 0;
   double psnr = 0;  ///< that was reached; only if a target was given, and infinite if all is kept
 };

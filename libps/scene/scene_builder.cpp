@@ -55,7 +55,7 @@ struct SceneBuilder::Impl {
   }
 
   bool fill(SupportView& support, const Splat& seen);
-  void align(SupportView& support, const Splat& seen);
+  void align(SupportView& support, const Splat& seen, const Depth& cloud_depth);
 };
 
 SceneBuilder::SceneBuilder(const SceneNetworks& networks, const Intrinsics& lens,
@@ -96,7 +96,7 @@ bool SceneBuilder::Impl::fill(SupportView& support, const Splat& seen) {
 }
 
 /// Depth of the picture, made to continue what is seen of the cloud.
-void SceneBuilder::Impl::align(SupportView& support, const Splat& seen) {
+void SceneBuilder::Impl::align(SupportView& support, const Splat& seen, const Depth& cloud_depth) {
   SupportReport& report = support.report;
   auto start = std::chrono::steady_clock::now();
   const Depth guess = photo_depth(*networks.depth, support.view.color, lens, networks.depth_scale);
@@ -104,7 +104,7 @@ void SceneBuilder::Impl::align(SupportView& support, const Splat& seen) {
   start = std::chrono::steady_clock::now();
   const Mask visible = seen.hit & (seen.missing == 0);
   const AlignedDepth aligned =
-      align_depth(guess, seen.expected_depth, visible, seen.missing, options.alignment);
+      align_depth(guess, cloud_depth, visible, seen.missing, options.alignment);
   support.view.depth = aligned.depth;
   report.agreed = aligned.agreed;
   report.why = aligned.why;
@@ -134,11 +134,14 @@ SupportView SceneBuilder::outpaint(const Pose& world_from_cam, std::uint16_t num
     support.view.depth = seen.expected_depth;
     return support;
   }
-  const Mask covered = splat(cloud(), impl.lens, world_from_cam, narrow).hit;
+  const Splat near = splat(cloud(), impl.lens, world_from_cam, narrow);
   report.splat_seconds = seconds_since(start);
   if (!impl.fill(support, seen)) return {};
-  impl.align(support, seen);
-  support.pixels = seen.missing & (covered == 0);
+  // Wide splats show slanted surfaces too near.
+  Depth cloud_depth = seen.expected_depth.clone();
+  near.expected_depth.copyTo(cloud_depth, near.hit);
+  impl.align(support, seen, cloud_depth);
+  support.pixels = seen.missing & (near.hit == 0);
   support.pixels.setTo(1, support.pixels);
   report.pixels = static_cast<std::size_t>(cv::countNonZero(support.pixels));
   const Mask before =

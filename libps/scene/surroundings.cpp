@@ -12,6 +12,9 @@ namespace {
 
 constexpr std::size_t kCellsAtATime = 8;
 constexpr float kNoDirection = 0.3f;  ///< pixels; what is nearer tells nothing of directions
+/// Share of the splats' radius that colours are blurred over, in judging: of the points that hit a
+/// pixel the nearest few hide the others, so pictures are sharper than a mean of all.
+constexpr float kSharp = 0.5f;
 /// A surface ends where so many of eight directions in a row have no sample: a straight outline
 /// leaves three or four, and a hole narrower than a splat none.
 constexpr int kEmptyAtEnd = 3;
@@ -110,16 +113,18 @@ class Looker {
     std::size_t count = 0;
     const Neighbour* near = around.near(s, options_.radius * s.pixel, &count);
     const float per_metre = 1 / s.pixel, per_radius = per_metre / options_.radius;
-    float sum = 0;
+    float sum = 0, color_sum = 0;
     Eigen::Vector3f color = Eigen::Vector3f::Zero(), mean = Eigen::Vector3f::Zero();
     Eigen::Matrix3f square = Eigen::Matrix3f::Zero();
     for (const Neighbour* n = near; n != near + count; ++n) {
       const Sample& other = samples_[n->sample];
-      const float weight = 1 - n->distance * per_radius;
+      const float share = n->distance * per_radius;
+      const float weight = 1 - share, color_weight = std::max(0.f, kSharp - share);
       const Eigen::Vector3f offset = (other.position - s.position) * per_metre;
       const Eigen::Vector3f weighted = weight * offset;
       sum += weight;
-      color += weight * other.color;
+      color_sum += color_weight;
+      color += color_weight * other.color;
       mean += weighted;
       square.noalias() += weighted * offset.transpose();
     }
@@ -128,7 +133,7 @@ class Looker {
     axes.computeDirect(square / sum - mean * mean.transpose());
     const Eigen::Vector3f normal = axes.eigenvectors().col(0);
     const float rough = std::sqrt(std::max(0.f, axes.eigenvalues()[0]));
-    return {color / sum, s.position + normal.dot(mean) * s.pixel * normal, normal,
+    return {color / color_sum, s.position + normal.dot(mean) * s.pixel * normal, normal,
             rough > 1.5f * options_.flat || ends(s, near, count, axes.eigenvectors())};
   }
 

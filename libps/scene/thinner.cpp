@@ -81,6 +81,7 @@ std::vector<Sample> Thinner::at(double tolerance) const {
 }
 
 std::vector<Sample> Thinner::down_to(std::size_t most, BudgetReport* report) const {
+  report->pixels = pixels_;
   report->tolerance = 0;
   std::vector<Sample> samples = at(0);
   if (samples.size() <= most) return samples;
