@@ -19,6 +19,7 @@ void SceneArguments::add_view_options(CLI::App& verb) {
                   "Which of left, right, up, down, up-left, up-right, down-left, down-right")
       ->type_name("NAME,...")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->check(CLI::IsMember(direction_names()));
   verb.add_option("--range-horizontal", range_horizontal,
                   "How far the camera turns to the left and right: radians, or degrees as 34deg")
@@ -84,7 +85,8 @@ void add_picture_options(CLI::App& verb, SceneArguments& a) {
   verb.add_option("--paths", a.paths,
                   "Videos to make, NAME.mp4: circle, sway, a direction, or a trajectory file")
       ->type_name("PATH,...")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);
   verb.add_option("--path-frames", a.path_frames, "Frames of each built-in path")
       ->type_name("N")
       ->check(whole_in(1, 100000));

@@ -9,7 +9,6 @@
 #include "apps/scene_report.h"
 #include "io/trajectory.h"
 #include "libps/core/error.h"
-#include "libps/scene/view_renderer.h"
 
 namespace ps::apps {
 namespace {
@@ -142,9 +141,8 @@ void SceneMaker::make() {
 }
 
 void SceneMaker::keep_to_budget(const std::vector<PlannedView>& views) {
-  std::optional<BudgetOptions> options = a_.point_budget();
+  const std::optional<BudgetOptions> options = a_.point_budget();
   if (!options) return;
-  if (models_) options->radius = ViewRendererOptions().detail_radius;
   const Stopwatch watch;
   BudgetReport done;
   const std::size_t before = cloud_.size();

@@ -166,6 +166,7 @@ void add_eval_consistency(CLI::App& eval, const Context& context) {
   a->frames.add_to(*verb);
   verb->add_option("--methods", a->methods, "Of support, sequential, independent")
       ->delimiter(',')
+      ->allow_extra_args(false)
       ->type_name("NAME,...")
       ->check(CLI::IsMember({"support", "sequential", "independent"}));
   a->scene.add_view_options(*verb);

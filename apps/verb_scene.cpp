@@ -210,6 +210,9 @@ void run_scene(const SceneArguments& a, const CLI::App& verb, const Context& con
   note_interrupts();
   try {
     make_scene(a, settings, scene, context);
+  } catch (const Error&) {
+    scene.finish();  // the same command would fail again
+    throw;
   } catch (const Interrupted&) {
     if (!scene.has_begun()) throw;
     throw Interrupted(

@@ -31,24 +31,47 @@ cv::Mat blurred(const cv::Mat& image, double sigma) {
   return out;
 }
 
-/// The cloud's own picture where it is seen, its coarse part replaced by that of `base`; `base`
-/// elsewhere, and a mixture where the cloud is seen in spots.
-Image with_detail(const Image& base, const Splat& fine, double sigma) {
+/// The cloud's own picture.
+struct Shown {
+  Image color;
+  Mask where;         ///< 255 where there is one
+  cv::Mat1f inverse;  ///< of depth; 0 where there is none
+};
+
+/// Takes wider splats where there are gaps that they close: where a nearer surface is all round, or
+/// the cloud is, and no narrow splat.
+void close_gaps(const Splat& wider, float radius, Shown* shown) {
+  constexpr float kNearer = 1.05f;  // in 1 / z
+  // A closed surface has no gaps, but what is seen between two of them: only points that stand
+  // apart count, which an opening removes.
+  cv::Mat1f opened, apart = shown->inverse.clone(), closed;
+  cv::morphologyEx(shown->inverse, opened, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
+  apart.setTo(0, shown->inverse <= kNearer * opened);
+  const int side = 2 * static_cast<int>(std::ceil(radius)) + 1;
+  cv::morphologyEx(apart, closed, cv::MORPH_CLOSE, cv::Mat::ones(side, side, CV_8U));
+  const Mask gaps = (closed > kNearer * shown->inverse) & (wider.hit != 0);
+  wider.color.copyTo(shown->color, gaps);
+  closed.copyTo(shown->inverse, gaps);
+  shown->where |= gaps;
+}
+
+/// The cloud where it is shown; elsewhere `base`, which near the seam is moved towards the colours
+/// there.
+Image completed(const Shown& shown, const Image& base, double sigma) {
   cv::Mat1f seen;
-  fine.hit.convertTo(seen, CV_32F);
+  shown.where.convertTo(seen, CV_32F, 1.0 / 255);
+  Image difference = shown.color - base;
+  difference.setTo(cv::Scalar::all(0), shown.where == 0);
   const cv::Mat1f share = blurred(seen, sigma);
-  Image difference = base - fine.color;
-  difference.setTo(cv::Scalar::all(0), fine.hit == 0);
-  const Image coarse = blurred(difference, sigma);
-  Image out = base.clone();
+  const Image moved = blurred(difference, sigma);
+  Image out = shown.color.clone();
   for (int y = 0; y < out.rows; ++y) {
     for (int x = 0; x < out.cols; ++x) {
-      if (!fine.hit(y, x)) continue;
-      const float weight = std::clamp(2 * share(y, x) - 1, 0.f, 1.f);
-      const cv::Vec3f detailed = fine.color(y, x) + coarse(y, x) / share(y, x);
+      if (shown.where(y, x)) continue;
+      // At the seam the share is one half: all of the mean difference there.
+      const float weight = std::min(1.f, 2 * share(y, x)) / std::max(share(y, x), 1e-4f);
       for (int c = 0; c < 3; ++c) {
-        const float mixed = weight * detailed[c] + (1 - weight) * base(y, x)[c];
-        out(y, x)[c] = std::clamp(mixed, 0.f, 1.f);
+        out(y, x)[c] = std::clamp(base(y, x)[c] + weight * moved(y, x)[c], 0.f, 1.f);
       }
     }
   }
@@ -93,14 +116,23 @@ RenderedView ViewRenderer::render(const pcl::PointCloud<Point>& cloud, const Int
     return view;
   }
   const Intrinsics seen = network_lens(lens);
+  RenderedView view;
+  const float radius = fine.radius;
+  fine.radius = std::min(options_.detail_radius, radius);
+  view.splat = splat(cloud, lens, world_from_cam, fine);
+  Shown shown = {view.splat.color.clone(), view.splat.hit != 0, 1 / view.splat.first_depth};
+  shown.inverse.setTo(0, view.splat.hit == 0);
+  while (fine.radius < radius) {
+    fine.radius = std::min(2 * fine.radius, radius);
+    close_gaps(splat(cloud, lens, world_from_cam, fine), fine.radius, &shown);
+  }
+  view.missing_share = cv::mean(shown.where == 0)[0] / 255;
+  view.color = shown.color;
+  if (view.missing_share == 0 && !options_.as_published) return view;
   const Splat coarse = splat(cloud, seen, world_from_cam, options_.splat);
   const Image base = resampled(refined(coarse), seen, lens);
-  RenderedView view;
-  view.missing_share = cv::mean(coarse.missing)[0];
-  fine.radius = options_.detail_radius;
-  view.splat = splat(cloud, lens, world_from_cam, fine);
-  const double sigma = options_.detail_from * lens.fx / seen.fx;
-  view.color = sigma > 0 ? with_detail(base, view.splat, sigma) : base;
+  constexpr double kSeam = 4;  // of the networks' pixels
+  view.color = options_.as_published ? base : completed(shown, base, kSeam * lens.fx / seen.fx);
   return view;
 }
 

@@ -19,23 +19,26 @@ namespace ps {
 struct Point;
 
 struct ViewRendererOptions {
-  SplatOptions splat;          ///< what the refiner is given; its background is set to grey
-  float detail_radius = 1.5f;  ///< pixels of the view; of the splats that give the detail
-  /// Standard deviation, in the networks' pixels, of what is taken from the refiner where the cloud
-  /// is seen; what is finer comes from the cloud. 0 = the refiner's picture alone, as published.
-  double detail_from = 2;
-  std::uint64_t seed = 0;  ///< of the refiner's noise, which is the same for all views
+  SplatOptions splat;         ///< what the refiner is given; its background is set to grey
+  float detail_radius = 1;    ///< pixels of the view; of the splats that show the cloud
+  bool as_published = false;  ///< the refiner's picture alone
+  std::uint64_t seed = 0;     ///< of the refiner's noise, which is the same for all views
 };
 
 struct RenderedView {
   Image color;               ///< [0,1], of the lens's size
   Splat splat;               ///< of the cloud into this lens, with detail_radius
-  double missing_share = 0;  ///< of the networks' view: what the refiner alone had to fill in
+  double missing_share = 0;  ///< of its pixels: what the refiner alone had to fill in
 };
 
-/// @brief Any view of a scene's cloud: splat and refinement (SPEC.md 1). The networks see 256
-/// pixels along the short side; where the cloud is seen, what is finer than they can tell comes
-/// from the cloud itself, splatted at the view's full size. Not for two threads at once.
+/// @brief Any view of a scene's cloud: splat and refinement (SPEC.md 1).
+///
+/// Where the cloud is seen, it is shown as it is, by narrow splats at the view's full size: a wide
+/// splat shows slanted surfaces some pixels beside their place, as the nearest of its points wins,
+/// and a network repaints what is known. Gaps between points, where a surface is so near that
+/// narrow splats do not close it, are found by a closing of inverse depth and filled by wide
+/// splats. What is missing is the refiner's, which sees 256 pixels along the short side, moved
+/// towards the colours at the seam. Not for two threads at once.
 class ViewRenderer {
  public:
   /// @param refiner  must outlive this; null = no network: the splat alone, renormalised, of

@@ -174,7 +174,8 @@ PixelCnn::PixelCnn(int f, int codes, std::uint64_t seed)
     }
   }
   add_normed(p, "nin_out.lin_a", f, codes);
-  p.state("code_counts", torch::ones({codes}));
+  // Shares, summed over steps: numbers that an f16 can hold.
+  p.state("code_counts", torch::full({codes}, 1.0 / codes));
 }
 
 Tensor PixelCnn::forward(const Tensor& codes, const Tensor& order) const {

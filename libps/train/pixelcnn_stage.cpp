@@ -57,7 +57,8 @@ class PixelCnnStage : public Stage {
     const bool taken = adam_.step(learning_rate);
     const torch::NoGradGuard guard;
     Tensor counts = net_.parameters["code_counts"];
-    counts += torch::bincount(codes.flatten(), {}, counts.size(0));
+    counts +=
+        torch::bincount(codes.flatten(), {}, counts.size(0)).to(torch::kFloat32) / codes.numel();
     const double bits = (each.detach() * unseen.flatten()).sum().item<double>() /
                         std::max(unseen.sum().item<double>(), 1.0) / std::log(2.0);
     return {{"loss_bits", loss.item<double>() / std::log(2.0)},
