@@ -24,15 +24,14 @@ struct PlannedView {
 /// @brief How much of a cloud its planned views need. Pixels are those of the view that shows a
 /// point finest.
 struct BudgetOptions {
-  double pixels = 0.5;    ///< points nearer to each other than this may merge, whatever they show
-  double spacing = 0.75;  ///< farthest that a point speaks for its like, in radii of the splats
-  double tolerance =
-      0.03;                ///< colours that differ by less are alike, once splats have blurred them
-  std::size_t points = 0;  ///< finds the tolerance at which no more than so many stay; 0 = as given
-  /// Finds the greatest tolerance at which pictures of the thinned cloud are this near to those of
-  /// the whole: dB, in the worst of up to eight of the planned views, spread evenly over them,
-  /// where the whole cloud hits. 0 = the tolerance as given. With `points` too, that is what is
-  /// kept to.
+  double pixels = 0.5;      ///< points nearer to each other than this merge, whatever they show
+  double spacing = 0.75;    ///< farthest that a point speaks for its like, in radii of the splats
+  double tolerance = 0.03;  ///< colours, as splats blur them, are one where they differ by no more
+  /// Finds the tolerance at which no more points than this stay, nor much fewer; 0 = no target.
+  std::size_t points = 0;
+  /// Finds the greatest tolerance at which pictures of the thinned cloud are so near to those of
+  /// the whole, dB: in the worst of up to eight of the planned views, taken evenly, over the pixels
+  /// that the whole cloud hits; 0 = no target. Given both, `points` is kept to first.
   double psnr = 0;
   float radius = 4;          ///< of the splats, pixels
   bool drop_unseen = false;  ///< leave out what no planned view can see
@@ -51,14 +50,14 @@ struct BudgetReport {
   double psnr = 0;  ///< that was reached; only if a target was given, and infinite if all is kept
 };
 
-/// @brief Merges the points of a cloud that planned views do not need apart.
+/// @brief Thins an accumulated cloud (PixelSynth section 3.2) to what planned views need.
 ///
-/// A point that stays speaks for those around it: it keeps its place, view and origin, takes their
-/// mean colour, and its footprint grows to the side of a square of all their area. It reaches as
-/// far as the surface is flat to within `pixels` and, blurred as by splats, of one colour; to where
-/// the surface ends or another begins it does not reach, so outlines, edges and texture keep their
-/// points. Observed and outpainted points are never merged with each other. Two sides of a sheet
-/// count as one surface if it is thinner than a pixel.
+/// A point that stays speaks for others around it: it keeps its place, view and origin, takes the
+/// mean of their colours, and its footprint grows to the side of a square of all their area. It
+/// reaches as far as the surface is flat, to within `pixels`, and of one colour; points where a
+/// surface ends, or that lie on none, speak for themselves. So outlines, edges and texture stay.
+/// Observed and outpainted points are never merged with each other, nor are two surfaces, unless
+/// they are less than four times `pixels` apart or a target of very few points asks for it.
 ///
 /// A point is seen by a view when it falls into its image, grown by the splats' radius; what is in
 /// front of it is not asked. Points that are not finite are dropped, and when no view is planned

@@ -9,7 +9,8 @@
 namespace ps {
 
 /// @brief Thins samples: one after another, those of the least reach first, each that is left takes
-/// those left within its reach, and speaks for them.
+/// those left within its reach, and speaks for them. None of longer reach takes one of the least.
+/// (Poisson-disk sampling by dart throwing, Cook, ACM TOG 1986, with the samples as darts.)
 /// @param grid   of cells of at least the greatest reach
 /// @param reach  pixels, one for each sample; 0 takes none
 /// @return those that took themselves, in order

@@ -9,7 +9,7 @@
 namespace ps {
 namespace {
 
-constexpr float kSeam = 1.04f;  ///< pixels of neighbours differ by less
+constexpr float kSeam = 1.04f;  ///< pixels of near neighbours seldom differ by more
 constexpr int kBlockBits = 2;   ///< blocks are 4 cells wide
 constexpr int kPlaces = 24;     ///< bits of a float
 constexpr int kOriginBits = 8;

@@ -154,17 +154,20 @@ class Looker {
     const Shown& here = shown_[i];
     Surroundings result;
     auto& difference = result.difference;
+    if (here.apart) {
+      difference.fill(Surroundings::kApart);
+      return result;
+    }
     const float reach = options_.reach * s.pixel, flat = options_.flat * s.pixel;
     std::size_t count = 0;
     const Neighbour* near = around.near(s, reach, &count);
     for (const Neighbour* n = near; n != near + count; ++n) {
       const Shown& there = shown_[n->sample];
-      if (there.apart && !here.apart) continue;  // speaks for itself, whatever is around it
+      if (there.apart) continue;  // it speaks for itself, whatever is around it
       const bool bent = std::fabs(here.normal.dot(there.position - here.position)) > flat;
       const float most = (there.color - here.color).cwiseAbs().maxCoeff();
-      const std::uint8_t one = bent || here.apart
-                                   ? Surroundings::kApart
-                                   : static_cast<std::uint8_t>(std::ceil(std::min(254.f, most)));
+      const std::uint8_t one =
+          bent ? Surroundings::kApart : static_cast<std::uint8_t>(std::ceil(std::min(254.f, most)));
       const int step = static_cast<int>(n->distance * Surroundings::kSteps / reach);
       auto& worst = difference[std::min(step, Surroundings::kSteps - 1)];
       worst = std::max(worst, one);

@@ -42,13 +42,16 @@ struct Shown {
 /// the cloud is, and no narrow splat.
 void close_gaps(const Splat& wider, float radius, Shown* shown) {
   constexpr float kNearer = 1.05f;  // in 1 / z
+  const int side = 2 * static_cast<int>(std::ceil(radius)) + 1;
+  const cv::Mat square = cv::Mat::ones(side, side, CV_8U);
+  cv::Mat1f opened, apart = shown->inverse.clone(), closed, closed_apart;
   // A closed surface has no gaps, but what is seen between two of them: only points that stand
-  // apart count, which an opening removes.
-  cv::Mat1f opened, apart = shown->inverse.clone(), closed;
+  // apart, which an opening removes, hide what is behind them.
   cv::morphologyEx(shown->inverse, opened, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
   apart.setTo(0, shown->inverse <= kNearer * opened);
-  const int side = 2 * static_cast<int>(std::ceil(radius)) + 1;
-  cv::morphologyEx(apart, closed, cv::MORPH_CLOSE, cv::Mat::ones(side, side, CV_8U));
+  cv::morphologyEx(apart, closed_apart, cv::MORPH_CLOSE, square);
+  cv::morphologyEx(shown->inverse, closed, cv::MORPH_CLOSE, square);
+  closed_apart.copyTo(closed, shown->where);
   const Mask gaps = (closed > kNearer * shown->inverse) & (wider.hit != 0);
   wider.color.copyTo(shown->color, gaps);
   closed.copyTo(shown->inverse, gaps);
