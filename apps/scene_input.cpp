@@ -19,6 +19,7 @@
 #include "libps/geometry/depth_alignment.h"
 #include "libps/geometry/relative_pose.h"
 #include "libps/scene/camera_path.h"
+#include "libps/scene/second_view.h"
 
 namespace fs = std::filesystem;
 
@@ -149,7 +150,11 @@ void add_second(const SceneInputArguments& a, const View& first, const DepthMode
       report["pose"]["depth_scale"] = scale;
     }
   }
-  input.views.push_back(shrunk(second, longest, report));
+  const SecondView agreed = second_view(first, second);
+  if (std::isfinite(agreed.before)) {
+    report["depth_disagreement"] = {{"before", agreed.before}, {"after", agreed.residual}};
+  }
+  input.views.push_back(shrunk(agreed.view, longest, report));
   input.report["second"] = report;
 }
 

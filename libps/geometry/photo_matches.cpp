@@ -12,8 +12,9 @@ namespace {
 constexpr int kLongSide = 1600;  ///< finer pictures say little more, and take long
 constexpr int kShortSide = 16;   ///< SIFT's coarsest octave needs some pixels
 constexpr int kMostFeatures = 4000;
+constexpr int kLayers = 3;          ///< of an octave: OpenCV's
+constexpr double kContrast = 0.01;  ///< a quarter of OpenCV's: plain walls have little
 constexpr double kEdge = 20;        ///< twice OpenCV's: rooms are full of edges
-constexpr double kContrast = 0.01;  ///< half of OpenCV's: plain walls have little
 constexpr float kRatio = 0.8f;      ///< Lowe's
 /// OpenCV's SIFT doubles the picture about pixels' corners, and gives places as if about centres.
 constexpr double kSiftShift = 0.25;
@@ -34,20 +35,22 @@ cv::Mat1b gray_of(const Image& photo) {
   return bytes;
 }
 
+/// RootSIFT (Arandjelovic and Zisserman, CVPR 2012): distances are Hellinger's, in which a few
+/// great entries count for less.
+void take_roots(cv::Mat descriptor) {
+  const double sum = cv::norm(descriptor, cv::NORM_L1);
+  if (sum > 0) cv::sqrt(descriptor / sum, descriptor);
+}
+
 Features features_of(const Image& photo) {
   Features features;
   if (photo.empty()) return features;
   const cv::Mat1b gray = gray_of(photo);
   if (std::min(gray.cols, gray.rows) < kShortSide) return features;
   std::vector<cv::KeyPoint> keypoints;
-  const auto sift = cv::SIFT::create(kMostFeatures, 3, kContrast, kEdge);
-  sift->detectAndCompute(gray, cv::noArray(), keypoints, features.descriptors);
-  // RootSIFT (Arandjelovic and Zisserman, CVPR 2012).
-  for (int i = 0; i < features.descriptors.rows; ++i) {
-    cv::Mat row = features.descriptors.row(i);
-    row /= std::max(cv::norm(row, cv::NORM_L1), 1e-12);
-    cv::sqrt(row, row);
-  }
+  cv::SIFT::create(kMostFeatures, kLayers, kContrast, kEdge)
+      ->detectAndCompute(gray, cv::noArray(), keypoints, features.descriptors);
+  for (int i = 0; i < features.descriptors.rows; ++i) take_roots(features.descriptors.row(i));
   const double sx = static_cast<double>(photo.cols) / gray.cols;
   const double sy = static_cast<double>(photo.rows) / gray.rows;
   for (const cv::KeyPoint& k : keypoints) {

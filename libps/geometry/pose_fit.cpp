@@ -13,7 +13,8 @@ using Matrix7 = Eigen::Matrix<double, 7, 7>;
 
 constexpr double kFits = 3;        ///< standard deviations within which a sighting is an inlier
 constexpr double kNearest = 1e-3;  ///< of the median depth; nothing is nearer to the second camera
-constexpr double kUnknownDepthError = 1;
+/// So wide that the place along the line says nothing, of the baseline's length least of all.
+constexpr double kUnknownDepthError = 10;
 constexpr double kLeastDepthError = 0.01, kMostDepthError = 0.4;
 constexpr double kWidths[] = {4, 2, 1};  ///< of all spreads; a rough start needs wide ones
 constexpr int kSteps = 30;               ///< for each width, at most
@@ -80,8 +81,11 @@ class Fitter {
     r.information = (Eigen::Matrix2d::Identity() - g * g.transpose() * (depth / along)) / across;
     r.from_depth = s.depth_known ? 1 - across / along : 0;
     r.m2 = error.dot(r.information * error);
+    // Without a depth, the place along the line is as free as the photo is wide, whatever the pose.
+    const double length =
+        s.depth_known ? std::sqrt(along) : std::max(lens_.width, lens_.height) / 4.;
     const double area = static_cast<double>(lens_.width) * lens_.height;
-    r.odds = area / (2 * M_PI * std::sqrt(across * along)) * std::exp(-r.m2 / 2);
+    r.odds = area / (2 * M_PI * pixel_sigma_ * length) * std::exp(-r.m2 / 2);
     return r;
   }
 

@@ -14,7 +14,7 @@ namespace ps {
 struct Sighting {
   Eigen::Vector3d point_in_first;   ///< metres; its direction is exact, its depth may not be
   Eigen::Vector2d pixel_in_second;  ///< pixels
-  bool depth_known = true;          ///< else its depth is a mere guess, that of others
+  bool depth_known = true;          ///< else its depth is any, that of others, say
 };
 
 struct PoseFit {
@@ -36,7 +36,8 @@ struct PoseFit {
 /// true match's residual is normal with covariance pixel_sigma^2 I + depth_error^2 g g^T, and any
 /// other's is even over the photo. Across the line pixels count in full (the epipolar constraint),
 /// along it as much as depths prove to be right (the perspective-n-point problem): one estimate
-/// serves true depths, guessed ones, and no baseline at all.
+/// serves true depths, guessed ones, and no baseline at all. Sightings without a depth count across
+/// the line alone.
 /// @param pixel_sigma  pixels of the second photo
 /// @param depth_error  first guess, relative
 PoseFit fit_pose(const std::vector<Sighting>& sightings, const Intrinsics& second_lens,

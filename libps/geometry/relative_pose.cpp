@@ -18,7 +18,7 @@ namespace ps {
 namespace {
 
 constexpr double kFeatureSigma = 0.7;      ///< pixels of the picture that features are found in
-constexpr double kDepthError = 0.15;       ///< relative; the fit begins with it
+constexpr double kDepthError = 0.15;       ///< relative; fits begin with it
 constexpr double kPointTolerance = 12;     ///< pixel sigmas that P3P forgives wrong depths
 constexpr double kDirectionTolerance = 3;  ///< pixel sigmas from an epipolar line
 constexpr double kSameSurface = 0.4;  ///< log ratio; farther off, one view sees another surface
@@ -68,7 +68,7 @@ Sightings sightings_of(const View& first, const Image& second) {
          d > 0});
     sightings.pixels.push_back(match);
   }
-  if (depths.empty()) {
+  if (depths.empty() && !sightings.list.empty()) {
     refuse("shares no place with the first at which that has a depth", "more in common");
   }
   const double middle = median(depths);
@@ -166,10 +166,9 @@ std::vector<double> ratios_at_inliers(const std::vector<Sighting>& sightings, co
 
 constexpr std::size_t kFew = 5;
 
-/// The median log ratio of what both see, beginning with a guess of it; others are of two surfaces.
-/// @return the ratios near to it, or those given where there are few
-std::vector<double> settled(const View& first, const View& second, std::vector<double> ratios) {
-  const std::vector<DepthRatio> all = depth_ratios(first, second);
+/// The log ratios of what both see that are near to the median of those given; others are of two
+/// surfaces. Those given, where there are few.
+std::vector<double> settled(const std::vector<DepthRatio>& all, std::vector<double> ratios) {
   for (int round = 0; round < 3; ++round) {
     const double middle = median(ratios);
     std::vector<double> near;
@@ -184,10 +183,14 @@ std::vector<double> settled(const View& first, const View& second, std::vector<d
 
 void compare_depths(const View& first, const View& second, std::vector<double> ratios,
                     SecondPose* result) {
+  const std::vector<DepthRatio> all = depth_ratios(first, second);
   if (ratios.size() < kFew) {
-    refuse("its depth is unknown where it fits the first photo", "a depth there, or none at all");
+    for (const DepthRatio& r : all) ratios.push_back(r.log_ratio);
   }
-  ratios = settled(first, second, std::move(ratios));
+  if (ratios.size() < kFew) {
+    refuse("its depth is unknown where both photos see", "a depth there, or none at all");
+  }
+  ratios = settled(all, std::move(ratios));
   const double middle = median(ratios);
   for (double& r : ratios) r = std::abs(r - middle);
   result->depth_scale = std::exp(middle);
@@ -231,10 +234,10 @@ SecondPose find_second_pose(const View& first, const Image& second, const Intrin
 double depth_scale_between(const View& first, const View& second) {
   check(first, "first photo");
   check(second, "second photo");
+  const std::vector<DepthRatio> all = depth_ratios(first, second);
   std::vector<double> ratios;
-  for (const DepthRatio& r : depth_ratios(first, second)) ratios.push_back(r.log_ratio);
-  if (ratios.empty()) return 1;
-  return std::exp(median(settled(first, second, std::move(ratios))));
+  for (const DepthRatio& r : all) ratios.push_back(r.log_ratio);
+  return ratios.empty() ? 1 : std::exp(median(settled(all, std::move(ratios))));
 }
 
 }  // namespace ps
