@@ -85,6 +85,7 @@ Point point_of(const Sample& sample, const Cloud& cloud) {
 Cloud cloud_of(const Cloud& cloud, const std::vector<Sample>& samples,
                const std::vector<std::uint32_t>& others) {
   std::vector<std::pair<std::uint32_t, const Sample*>> order;
+  order.reserve(samples.size() + others.size());
   for (const Sample& sample : samples) order.emplace_back(sample.point, &sample);
   for (const std::uint32_t point : others) order.emplace_back(point, nullptr);
   std::sort(order.begin(), order.end());

@@ -136,6 +136,7 @@ Sample sample_of(const Point& p, std::uint32_t number) {
 std::vector<Sample> seen_samples(const Cloud& cloud, const std::vector<PlannedView>& views,
                                  double margin, std::vector<std::uint32_t>* unseen) {
   std::vector<Frustum> frusta;
+  frusta.reserve(views.size());
   for (const PlannedView& view : views) frusta.emplace_back(view, margin);
   const std::vector<Place> places = places_of(cloud);
   std::vector<Sample> samples(places.size());
