@@ -39,7 +39,8 @@ sanitized() {
   suite "address, undefined" asan -LE networks
   export TSAN_OPTIONS=suppressions=$root/tests/tsan.supp
   build tsan core_test geometry_test nn_test models_test outpaint_test scene_test
-  suite threads tsan -E '_NOT_BUILT|^Apps|^Install'
+  # Features of photos are found by OpenCV's threads, not by ours, and take minutes here.
+  suite threads tsan -E '_NOT_BUILT|^Apps|^Install|SecondPose|SecondView|PhotoMatches|MatchPhotos'
   build fuzz "${readers[@]%.cpp}"
   if "$root/tests/fuzz/run.sh"; then
     summary+="fuzz: every reader is clean"$'\n'
