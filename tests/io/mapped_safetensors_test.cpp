@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/mapped_safetensors.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "io/safetensors.h"
@@ -23,7 +24,7 @@ TEST(MappedSafetensors, hold_what_read_safetensors_reads) {
     const MappedSafetensors::Tensor& other = mapped.tensors().at(name);
     EXPECT_EQ(other.dtype, tensor.dtype);
     EXPECT_EQ(other.shape, tensor.shape);
-    EXPECT_EQ(std::memcmp(other.data, tensor.bytes.data(), tensor.bytes.size()), 0) << name;
+    EXPECT_TRUE(std::equal(tensor.bytes.begin(), tensor.bytes.end(), other.data)) << name;
   }
 }
 
