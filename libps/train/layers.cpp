@@ -58,8 +58,8 @@ Tensor convolution(const Parameters& p, const std::string& name, const Tensor& x
 }
 
 Tensor transposed(const Parameters& p, const std::string& name, const Tensor& x) {
-  return wide(torch::conv_transpose2d(narrow(x), narrow(p[name + ".weight"]),
-                                      narrow(p[name + ".bias"]), 2, 1));
+  // libtorch 1.13 refuses transposed convolutions of bfloat16.
+  return torch::conv_transpose2d(x, p[name + ".weight"], p[name + ".bias"], 2, 1);
 }
 
 Tensor batch_norm(const Parameters& p, const std::string& name, const Tensor& x, bool training) {

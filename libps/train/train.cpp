@@ -284,7 +284,11 @@ const std::vector<std::string>& stage_names() {
 TrainReport train(const TrainOptions& options, const TrainProgress& progress) {
   if (options.threads > 0) at::set_num_threads(options.threads);
   set_threads(options.threads);
-  return Run(options, progress).go();
+  try {
+    return Run(options, progress).go();
+  } catch (const c10::Error& error) {
+    throw Error("train " + options.stage, error.what_without_backtrace());
+  }
 }
 
 }  // namespace ps::train

@@ -144,6 +144,7 @@ TEST_F(Training, of_a_decoder_keeps_the_codes) {
   o.keep_codes = true;
   EXPECT_NE(message_of(o).find("--keep-codes"), std::string::npos);
   o.init = o.codes;
+  o.arithmetic = "bf16";
   train(o, {});
   const nn::Weights before = read_weights(o.init),
                     after = read_weights(o.out / "weights.safetensors");
