@@ -187,7 +187,7 @@ TEST(ShareInFront, counts_points_of_the_origin_before_the_surface_and_no_others)
   View seen;
   seen.depth = Depth(4, 4, 2.f);
   seen.depth(0, 0) = 0;  // unknown
-  seen.intrinsics = {2, 2, 1.5, 1.5, 4, 4};
+  seen.intrinsics = {4, 4, 2, 2, 1.5, 1.5};
   seen.world_from_cam.translation() = Eigen::Vector3d(0, 0, 1);
   const auto at = [&](int u, int v, double z) {
     const Eigen::Vector3d p =
