@@ -12,14 +12,21 @@ namespace fs = std::filesystem;
 namespace ps::apps {
 namespace {
 
+constexpr char kRgb[] = "rgb.safetensors";
+
 fs::path rgb_weights(const std::string& weights) {
-  constexpr char kName[] = "rgb.safetensors";
   std::error_code ignored;
-  const fs::path beside = fs::path(weights) / kName;
-  return !weights.empty() && fs::exists(beside, ignored) ? beside : default_weights(kName);
+  const fs::path beside = fs::path(weights) / kRgb;
+  return !weights.empty() && fs::exists(beside, ignored) ? beside : default_weights(kRgb);
 }
 
 }  // namespace
+
+std::vector<std::string> default_methods() {
+  std::vector<std::string> names = view_method_names();
+  if (!find_default_weights(kRgb)) names.erase(std::find(names.begin(), names.end(), "rgb"));
+  return names;
+}
 
 MethodModels::MethodModels(const std::string& weights, const std::vector<std::string>& methods,
                            const Context& context) {

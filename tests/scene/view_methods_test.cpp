@@ -75,22 +75,24 @@ TEST_P(EachViewMethod, shows_what_is_seen_as_it_is_and_leaves_no_hole) {
   EXPECT_GT(psnr(view.color, truth, view.seen), GetParam() == "independent" ? 18 : 25);
 }
 
-TEST_P(EachViewMethod, gives_the_same_bytes_from_any_number_of_threads) {
-  set_threads(1);
-  const MethodView one = shown_by(GetParam());
-  set_threads(3);
-  const MethodView three = shown_by(GetParam());
-  set_threads(0);
-  EXPECT_TRUE(same_bytes(one.color, three.color));
-  EXPECT_TRUE(same_bytes(one.seen, three.seen));
-}
-
 INSTANTIATE_TEST_SUITE_P(ViewMethods, EachViewMethod, testing::ValuesIn(view_method_names()),
                          [](const auto& method) {
                            std::string name = method.param;
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });
+
+TEST(ViewMethods, give_the_same_bytes_from_any_number_of_threads) {
+  for (const char* name : {"ours", "independent", "no-outpainter", "telea", "nearest"}) {
+    set_threads(1);
+    const MethodView one = shown_by(name);
+    set_threads(3);
+    const MethodView three = shown_by(name);
+    set_threads(0);
+    EXPECT_TRUE(same_bytes(one.color, three.color)) << name;
+    EXPECT_TRUE(same_bytes(one.seen, three.seen)) << name;
+  }
+}
 
 TEST(ViewMethods, a_copy_through_the_same_lens_is_the_input) {
   EXPECT_TRUE(same_bytes(shown_by("copy", few_samples(), kLens).color, input_view().color));
