@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -82,8 +83,9 @@ void write_pictures(OutputFolder& folder, std::size_t number, const PairPictures
     folder.write(tiles[i].name + "/" + name,
                  [&](const std::filesystem::path& file) { write_image(file, tiles[i].image); });
   }
-  folder.write(name,
-               [&](const std::filesystem::path& file) { write_image(file, contact_sheet(tiles)); });
+  folder.write(name, [&](const std::filesystem::path& file) {
+    write_image(file, contact_sheet(tiles, std::min(320, pair.truth.cols)));
+  });
 }
 
 /// Scores all methods on one pair after another.
