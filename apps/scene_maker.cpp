@@ -59,18 +59,18 @@ void SceneMaker::observe() {
   AddReport sum;
   const Intrinsics& lens = input_.views.front().intrinsics;
   SceneCloud plain(options_.cloud);
-  if (models_) builder_ = std::make_unique<SceneBuilder>(models_->networks(), lens, options_);
-  const bool apart = models_ && plan_options_.strategy == Strategy::independent;
-  if (apart) apart_ = std::make_unique<SceneBuilder>(models_->networks(), lens, options_);
+  if (models_) {
+    scene_ = std::make_unique<StrategyScene>(plan_options_.strategy, models_->networks(), lens,
+                                             options_);
+  }
   for (std::size_t i = 0; i < input_.views.size(); ++i) {
     throw_if_interrupted();
     const auto number = static_cast<std::uint16_t>(i);
     const View& view = input_.views[i];
-    sum += builder_ ? builder_->observe(view, number) : plain.add(view, number);
-    if (apart_) apart_->observe(view, number);
+    sum += scene_ ? scene_->observe(view, number) : plain.add(view, number);
     if (i > 0) input_.views[i].color.release();  // it is in the cloud now
   }
-  cloud_ = builder_ ? builder_->cloud() : plain.cloud();
+  cloud_ = scene_ ? scene_->cloud() : plain.cloud();
   if (cloud_.empty()) {
     throw Error(a_.input.photo, "no pixel can be lifted", "depth in the range asked for");
   }
@@ -82,17 +82,16 @@ SupportView SceneMaker::outpaint(const ViewPlan& view, std::uint16_t number) {
   SupportView support;
   Json report;
   if (work_->load(number, support, report)) {
-    support.view.intrinsics = builder_->lens();
+    support.view.intrinsics = scene_->lens();
     support.view.world_from_cam = view.world_from_cam;
     report["resumed"] = true;
   } else {
-    SceneBuilder& source = apart_ ? *apart_ : *builder_;
-    support = source.outpaint(view.world_from_cam, number);
+    support = scene_->outpaint(view.world_from_cam, number);
     report = to_json(view.name, support.report, options_.outpaint.samples);
     work_->save(number, support, report);
   }
   const Stopwatch watch;
-  report["points"] = to_json(builder_->add(support, number));
+  report["points"] = to_json(scene_->add(support, number));
   if (report.contains("seconds")) report["seconds"]["add"] = watch.seconds();
   report_["support_views"].push_back(report);
   ++done_;
@@ -107,7 +106,7 @@ void SceneMaker::outpaint_all() {
       std::count_if(plan_.begin(), plan_.end(), [](const auto& view) { return view.outpaint; });
   bar_ =
       std::make_unique<Progress>(context_, "outpaint", static_cast<std::size_t>(wanted) * kSteps);
-  const bool shown = plan_options_.strategy != Strategy::support;
+  const bool shown = scene_->shows_outpainted();
   if (shown) painted_.resize(plan_.size());
   for (std::size_t i = 0; i < plan_.size(); ++i) {
     if (!plan_[i].outpaint) continue;
@@ -116,7 +115,7 @@ void SceneMaker::outpaint_all() {
     if (shown) painted_[i] = support.view.color;
   }
   bar_.reset();
-  cloud_ = builder_->cloud();
+  cloud_ = scene_->cloud();
   report_["seconds"]["outpaint"] = watch.seconds();
 }
 

@@ -10,6 +10,7 @@
 #include "apps/scene_models.h"
 #include "apps/scene_work.h"
 #include "libps/geometry/point.h"
+#include "libps/scene/strategies.h"
 
 namespace ps::apps {
 
@@ -36,7 +37,7 @@ class SceneMaker {
   /// Pictures of views that are shown as they were outpainted (strategies other than support), in
   /// the order of the plan; empty where the cloud is splatted.
   const std::vector<Image>& painted() const { return painted_; }
-  const Intrinsics& painted_lens() const { return builder_->lens(); }
+  const Intrinsics& painted_lens() const { return scene_->lens(); }
   /// Of observing and outpainting; its `seconds` are those of the stages.
   const Json& report() const { return report_; }
 
@@ -57,8 +58,7 @@ class SceneMaker {
   SceneInput input_;
   std::vector<ViewPlan> plan_;
   std::unique_ptr<SceneWork> work_;
-  std::unique_ptr<SceneBuilder> builder_;
-  std::unique_ptr<SceneBuilder> apart_;  ///< what was observed alone, for independent views
+  std::unique_ptr<StrategyScene> scene_;
   std::unique_ptr<Progress> bar_;
   std::size_t done_ = 0;  ///< views that are outpainted
   std::vector<Image> painted_;

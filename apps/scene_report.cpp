@@ -21,9 +21,13 @@ Json to_json(const std::string& name, const SupportReport& r, int samples) {
   json["cells"] = {{"sampled", o.missing_cells}, {"spared", o.cells - o.missing_cells}};
   json["completions"] = {
       {"drawn", o.drawn}, {"spared", samples - o.drawn}, {"refined", o.refined}, {"kept", r.best}};
-  json["depth"] = {{"agreed", r.agreed},       {"scale", r.scale},
-                   {"exponent", r.exponent},   {"residual", r.residual},
-                   {"seam_step", r.seam_step}, {"seam_step_before_blend", r.seam_step_before}};
+  json["depth"] = {{"agreed", r.agreed},
+                   {"scale", r.scale},
+                   {"exponent", r.exponent},
+                   {"residual", r.residual},
+                   {"seam_step", r.seam_step},
+                   {"seam_step_before_blend", r.seam_step_before},
+                   {"seam_step_seen", r.seam_step_seen}};
   if (!r.agreed) json["depth"]["why"] = r.why;
   json["pixels"] = {{"to_add", r.pixels}, {"refused_in_free_space", r.refused}};
   json["seconds"] = {{"splat", r.splat_seconds},   {"encode", o.encode_seconds},

@@ -15,6 +15,7 @@
 #include "apps/score_report.h"
 #include "apps/verb_eval.h"
 #include "libps/core/error.h"
+#include "libps/eval/cloud_metrics.h"
 #include "libps/eval/consistency.h"
 #include "libps/geometry/point.h"
 #include "libps/scene/strategies.h"
@@ -34,38 +35,29 @@ struct EvalConsistencyArguments {
 };
 
 std::vector<ScoreColumn> columns() {
-  return {{"PSNR", "dB", true},     {"LPIPS", "", false},    {"overlap", "", true},
-          {"seam step", "", false}, {"in front", "", false}, {"depth agreed", "", true},
+  return {{"PSNR", "dB", true},
+          {"LPIPS", "", false},
+          {"overlap", "", true},
+          {"seam step", "", false},
+          {"step before seam", "", false},
+          {"in front", "", false},
+          {"depth agreed", "", true},
           {"seconds", "s", false}};
-}
-
-/// Share of the outpainted points that stand before what the input saw at their pixel.
-double share_in_front(const Cloud& cloud, const View& input) {
-  const Pose cam_from_world = input.world_from_cam.inverse();
-  std::size_t invented = 0, before = 0;
-  for (const Point& point : cloud) {
-    if (static_cast<Origin>(point.origin) != Origin::outpainted) continue;
-    ++invented;
-    const Eigen::Vector3d p = cam_from_world * point.getVector3fMap().cast<double>();
-    if (!(p.z() > 0)) continue;
-    const Eigen::Vector2d at = input.intrinsics.project(p);
-    const double x = std::round(at.x()), y = std::round(at.y());
-    if (!(x >= 0 && y >= 0 && x < input.depth.cols && y < input.depth.rows)) continue;
-    const double seen = input.depth(static_cast<int>(y), static_cast<int>(x));
-    before += seen > 0 && p.z() < 0.99 * seen;
-  }
-  return invented == 0 ? kNaN : static_cast<double>(before) / static_cast<double>(invented);
 }
 
 /// Means over the directions of a shown scene.
 std::vector<double> scores_of(const ShownScene& shown, const Cloud& cloud, const Intrinsics& lens,
                               const View& input, const PerceptualDistance& perceptual,
                               double seconds) {
-  std::vector<double> psnr, lpips, overlap, steps, agreed;
+  std::vector<double> psnr, lpips, overlap, steps, steps_seen, agreed;
+  const auto add = [](std::vector<double>& values, double value) {
+    if (!std::isnan(value)) values.push_back(value);
+  };
   for (const ShownView& half : shown.views) {
     const std::size_t number = half.plan.name.find("_1");
     if (half.report.best >= 0) {
-      if (!std::isnan(half.report.seam_step)) steps.push_back(half.report.seam_step);
+      add(steps, half.report.seam_step);
+      add(steps_seen, half.report.seam_step_seen);
       agreed.push_back(half.report.agreed ? 1 : 0);
     }
     if (number == std::string::npos) continue;
@@ -80,8 +72,10 @@ std::vector<double> scores_of(const ShownScene& shown, const Cloud& cloud, const
       overlap.push_back(score.overlap);
     }
   }
-  return {mean(psnr),   mean(lpips), mean(overlap), median(steps), share_in_front(cloud, input),
-          mean(agreed), seconds};
+  return {mean(psnr),         mean(lpips),
+          mean(overlap),      median(steps),
+          median(steps_seen), share_in_front(cloud, Origin::outpainted, input),
+          mean(agreed),       seconds};
 }
 
 ScoreTable measure(const EvalConsistencyArguments& a, const ChosenFrames& frames,
@@ -145,7 +139,8 @@ void add_eval_consistency(CLI::App& eval, const Context& context) {
       "How well views of one scene agree (SPEC 11): each frame becomes a scene, and in each "
       "direction the view at the extreme is held against the one half way, by homography, both "
       "ways, on their overlap. Also of each scene: the median relative step of depth across the "
-      "seam of what was outpainted, and the share of outpainted points that stand before what the "
+      "seam of what was outpainted, and between seen pixels just before it, and the share of "
+      "outpainted points that stand before what the "
       "input saw.\n"
       "Below each mean its 95 % bootstrap interval over rooms, or over twentieths of a walk.");
   auto a = std::make_shared<EvalConsistencyArguments>();

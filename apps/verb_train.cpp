@@ -56,6 +56,11 @@ void add_common_options(CLI::App& verb, TrainArguments& a) {
   whole("--test-every", o.test_every, "Steps from evaluation to evaluation", 1, kManySteps);
   whole("--test-count", o.test_count, "Examples of each group in an evaluation", 1, 1000000);
   path("--device", o.device, "cpu or cuda", "DEVICE");
+  verb.add_option("--arithmetic", o.arithmetic,
+                  "Of convolutions' products: f32, or bf16, twice as fast where the processor has "
+                  "AMX")
+      ->type_name("TYPE")
+      ->check(CLI::IsMember({"f32", "bf16"}));
 }
 
 void add_depth_options(CLI::App& verb, TrainOptions& o) {
@@ -81,9 +86,13 @@ void add_stage_options(CLI::App& verb, TrainOptions& o) {
   const auto whole = [&](const char* name, auto& value, const char* what) {
     verb.add_option(name, value, what)->type_name("N")->check(whole_in(0, kManySteps));
   };
-  auto* codes =
-      verb.add_option("--codes", o.codes, "Weights of a trained vqvae (pixelcnn, refine)");
-  codes->type_name("FILE")->required(coded);
+  auto* codes = verb.add_option(
+      "--codes", o.codes, "Weights of a trained vqvae (pixelcnn, refine), or the colours of cells");
+  codes->type_name("FILE|colours")->required(coded);
+  if (o.stage == "vqvae") {
+    verb.add_flag("--keep-codes", o.keep_codes,
+                  "Train the decoder of --init alone: what was trained on its codes stays true");
+  }
   verb.add_option("--init", o.init, "Weights to begin with")->type_name("FILE");
   whole("--steps", o.steps, "Steps in all; 0 = the stage's own");
   whole("--stop-after", o.stop_after, "Stop after so many steps of this run; 0 = never");

@@ -159,4 +159,23 @@ std::vector<double> nearest_distances(const Cloud& from, const Cloud& to) {
   return metres;
 }
 
+double share_in_front(const Cloud& cloud, Origin origin, const View& seen) {
+  constexpr double kTolerance = 0.01;
+  const Pose cam_from_world = seen.world_from_cam.inverse();
+  std::size_t all = 0, before = 0;
+  for (const Point& point : cloud) {
+    if (static_cast<Origin>(point.origin) != origin) continue;
+    ++all;
+    const Eigen::Vector3d p = cam_from_world * point.getVector3fMap().cast<double>();
+    if (!(p.z() > 0)) continue;
+    const Eigen::Vector2d at = seen.intrinsics.project(p);
+    const double x = std::round(at.x()), y = std::round(at.y());
+    if (!(x >= 0 && y >= 0 && x < seen.depth.cols && y < seen.depth.rows)) continue;
+    const double surface = seen.depth(static_cast<int>(y), static_cast<int>(x));
+    before += surface > 0 && p.z() < (1 - kTolerance) * surface;
+  }
+  if (all == 0) return std::numeric_limits<double>::quiet_NaN();
+  return static_cast<double>(before) / static_cast<double>(all);
+}
+
 }  // namespace ps

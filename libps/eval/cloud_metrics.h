@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "libps/geometry/point.h"
+#include "libps/geometry/view.h"
 
 namespace ps {
 
@@ -30,5 +31,11 @@ double chamfer_distance(const Cloud& a, const Cloud& b);
 /// @return for each point of `from`, metres to the nearest point of `to`, exactly: NaN for a point
 /// that is not finite, infinite when `to` has no finite point. Runs on all threads.
 std::vector<double> nearest_distances(const Cloud& from, const Cloud& to);
+
+/// @brief How much of what was invented contradicts what a camera saw.
+/// @param seen  with depth (metres), lens and pose; colours are not looked at
+/// @return the share of the points of this origin that stand before the surface that `seen` saw at
+/// their pixel, by more than a hundredth of its depth; NaN when there are no such points
+double share_in_front(const Cloud& cloud, Origin origin, const View& seen);
 
 }  // namespace ps

@@ -145,6 +145,7 @@ void fill(Depth* depth) {
 }
 
 /// The median relative step from seen pixels to missing neighbours.
+/// @param depth_at  of (a seen pixel, the step to the missing one): the depth beyond
 template <class DepthAt>
 double seam_step(const Depth& cloud_depth, const Mask& seen, const Mask& missing,
                  const DepthAt& depth_at) {
@@ -157,7 +158,7 @@ double seam_step(const Depth& cloud_depth, const Mask& seen, const Mask& missing
       for (const auto& [dy, dx] : kAround) {
         const cv::Point beyond(x + dx, y + dy);
         if (!image.contains(beyond) || !missing(beyond)) continue;
-        const float depth = depth_at(beyond);
+        const float depth = depth_at(cv::Point(x, y), cv::Point(dx, dy));
         if (known(depth)) steps.push_back(std::fabs(depth / cloud_depth(y, x) - 1));
       }
     }
@@ -248,11 +249,18 @@ AlignedDepth align_depth(const Depth& estimate, const Depth& cloud_depth, const 
   if (!known(aligned.depth(0, 0)) && cv::countNonZero(missing) > 0) {
     throw Error("align_depth", "no depth is known at all", "one of estimate or visible cloud");
   }
-  aligned.seam_step_before = seam_step(cloud_depth, logs.seen, missing, [&](cv::Point p) {
-    return logs.estimated(p) ? depth_of(fit(logs.estimate(p))) : 0;
+  const auto median_step = [&](const auto& depth_at) {
+    return seam_step(cloud_depth, logs.seen, missing, depth_at);
+  };
+  aligned.seam_step_before = median_step([&](cv::Point p, cv::Point step) {
+    return logs.estimated(p + step) ? depth_of(fit(logs.estimate(p + step))) : 0;
   });
   aligned.seam_step =
-      seam_step(cloud_depth, logs.seen, missing, [&](cv::Point p) { return aligned.depth(p); });
+      median_step([&](cv::Point p, cv::Point step) { return aligned.depth(p + step); });
+  const cv::Rect image({0, 0}, logs.seen.size());
+  aligned.seam_step_seen = median_step([&](cv::Point p, cv::Point step) {
+    return image.contains(p - step) && logs.seen(p - step) ? cloud_depth(p - step) : 0;
+  });
   return aligned;
 }
 

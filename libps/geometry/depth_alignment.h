@@ -32,6 +32,8 @@ struct AlignedDepth {
   /// scale and exponent alone, and in `depth`. NaN where there are no such pairs.
   double seam_step_before = 0;
   double seam_step = 0;
+  /// The same between visible pixels, one pixel before the seam: what surfaces have by their slant.
+  double seam_step_seen = 0;
   std::string why;  ///< a short clause when not agreed
 };
 

@@ -64,6 +64,16 @@ cv::Mat1f log_depth_of(const models::DepthNet& net, const Image& square, const D
   return logarithm;
 }
 
+/// The mean of what the network says of a square and of its mirror image.
+cv::Mat1f mirrored_log_depth_of(const models::DepthNet& net, const Image& square,
+                                const DepthScale& scale, nn::Workspace& workspace) {
+  Image mirrored;
+  cv::flip(square, mirrored, 1);
+  cv::Mat1f other;
+  cv::flip(log_depth_of(net, mirrored, scale, workspace), other, 1);
+  return (log_depth_of(net, square, scale, workspace) + other) / 2;
+}
+
 /// The median of `later` - `earlier` where they overlap, `apart` columns after the earlier began.
 float median_step(const cv::Mat1f& earlier, const cv::Mat1f& later, int apart) {
   const cv::Mat1f difference = later.colRange(0, kSide - apart) - earlier.colRange(apart, kSide);
@@ -130,7 +140,7 @@ Depth photo_depth(const models::DepthNet& net, const Image& photo, const Intrins
   for (const int start : starts) {
     const cv::Point at = upright ? cv::Point(0, start) : cv::Point(start, 0);
     squares.push_back(
-        log_depth_of(net, small(cv::Rect(at, cv::Size(kSide, kSide))), scale, workspace));
+        mirrored_log_depth_of(net, small(cv::Rect(at, cv::Size(kSide, kSide))), scale, workspace));
     if (upright) squares.back() = squares.back().t();
   }
   align(squares, starts);

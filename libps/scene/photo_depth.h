@@ -25,9 +25,11 @@ void check(const DepthScale& scale, const std::string& where);
 /// length.
 ///
 /// Nothing is squashed: the photo is resized to a short side of 256 pixels, and its long side is
-/// covered by overlapping squares. The depths of one are multiplied by a constant (the median ratio
-/// where they overlap) to go on from its neighbour's, then all are blended in their logarithm, with
-/// weights that fall to 0 towards a square's ends, and resized to the photo's size.
+/// covered by overlapping squares. The network sees each square and its mirror image, and the mean
+/// of the two logarithms is taken (Godard et al., "Monodepth", CVPR 2017). The depths of one are
+/// multiplied by a constant (the median ratio where they overlap) to go on from its neighbour's,
+/// then all are blended in their logarithm, with weights that fall to 0 towards a square's ends,
+/// and resized to the photo's size.
 ///
 /// An image alone does not tell a large thing far away from a small one nearby, nor a long lens
 /// from either. So the network takes each square to be from one canonical camera (Yin et al.,

@@ -97,6 +97,7 @@ void SceneBuilder::Impl::align(SupportView& support, const Splat& seen, const De
   report.residual = aligned.residual;
   report.seam_step = aligned.seam_step;
   report.seam_step_before = aligned.seam_step_before;
+  report.seam_step_seen = aligned.seam_step_seen;
   report.align_seconds = seconds_since(start);
 }
 

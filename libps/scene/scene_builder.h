@@ -37,7 +37,9 @@ struct SupportReport {
   bool agreed = true;  ///< its depth could be aligned to the cloud
   std::string why;     ///< why not
   double scale = 1, exponent = 1, residual = 0;  ///< of the alignment (depth_alignment.h)
-  double seam_step = 0, seam_step_before = 0;    ///< relative depth step across the seam, median
+  /// Median relative depth steps (depth_alignment.h): across the seam, by scale and exponent alone,
+  /// and of surfaces before the seam.
+  double seam_step = 0, seam_step_before = 0, seam_step_seen = 0;
   std::size_t pixels = 0;   ///< that nothing was projected to: candidates for new points
   std::size_t refused = 0;  ///< of them: would stand before what an observed view saw
   double splat_seconds = 0, outpaint_seconds = 0, depth_seconds = 0, align_seconds = 0;

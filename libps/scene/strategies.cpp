@@ -5,21 +5,39 @@
 
 namespace ps {
 
+StrategyScene::StrategyScene(Strategy strategy, const SceneNetworks& networks,
+                             const Intrinsics& lens, const SceneOptions& options)
+    : strategy_(strategy), scene_(networks, lens, options) {
+  if (strategy == Strategy::independent) observed_.emplace(networks, lens, options);
+}
+
+AddReport StrategyScene::observe(const View& view, std::uint16_t number) {
+  if (observed_) observed_->observe(view, number);
+  return scene_.observe(view, number);
+}
+
+SupportView StrategyScene::outpaint(const Pose& world_from_cam, std::uint16_t number) {
+  return (observed_ ? *observed_ : scene_).outpaint(world_from_cam, number);
+}
+
+AddReport StrategyScene::add(const SupportView& support, std::uint16_t number) {
+  return scene_.add(support, number);
+}
+
 ShownScene show_scene(const View& input, const std::vector<ViewPlan>& plan, Strategy strategy,
                       const SceneNetworks& networks, const SceneOptions& options,
                       const ViewRendererOptions& renderer_options) {
-  ShownScene shown = {SceneBuilder(networks, input.intrinsics, options), {}};
-  SceneBuilder& scene = shown.scene;
-  scene.observe(input, 0);
-  for (std::size_t i = 0; i < plan.size(); ++i) {
-    shown.views.push_back({plan[i], {}, {}});
-    if (!plan[i].outpaint) continue;
-    const auto number = static_cast<std::uint16_t>(i + 1);
-    const Pose& pose = plan[i].world_from_cam;
-    const SupportView support = scene.outpaint(pose, number);
+  ShownScene shown = {StrategyScene(strategy, networks, input.intrinsics, options), {}};
+  StrategyScene& scene = shown.scene;
+  std::uint16_t number = 0;
+  scene.observe(input, number);
+  for (const ViewPlan& view : plan) {
+    shown.views.push_back({view, {}, {}});
+    if (!view.outpaint) continue;
+    const SupportView support = scene.outpaint(view.world_from_cam, ++number);
+    scene.add(support, number);
     shown.views.back().report = support.report;
-    if (strategy != Strategy::support) shown.views.back().image = support.view.color;
-    if (strategy != Strategy::independent) scene.add(support, number);
+    if (scene.shows_outpainted()) shown.views.back().image = support.view.color;
   }
   ViewRenderer renderer(networks.outpaint.refiner, renderer_options);
   for (ShownView& view : shown.views) {

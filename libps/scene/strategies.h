@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "libps/scene/scene_builder.h"
@@ -8,6 +10,29 @@
 #include "libps/scene/view_renderer.h"
 
 namespace ps {
+
+/// @brief A scene that is outpainted by a strategy (PixelSynth, section 4.3): as a SceneBuilder,
+/// but `independent` views are made of what was observed alone. All are added to one cloud.
+class StrategyScene {
+ public:
+  StrategyScene(Strategy strategy, const SceneNetworks& networks, const Intrinsics& lens,
+                const SceneOptions& options = {});
+
+  // As SceneBuilder's.
+  AddReport observe(const View& view, std::uint16_t number);
+  SupportView outpaint(const Pose& world_from_cam, std::uint16_t number);
+  AddReport add(const SupportView& support, std::uint16_t number);
+  const Cloud& cloud() { return scene_.cloud(); }
+  const Intrinsics& lens() const { return scene_.lens(); }
+
+  /// @return whether outpainted views are shown as they are; else the cloud is splatted into them
+  bool shows_outpainted() const { return strategy_ != Strategy::support; }
+
+ private:
+  Strategy strategy_;
+  SceneBuilder scene_;
+  std::optional<SceneBuilder> observed_;  ///< what was observed alone, where that is asked for
+};
 
 /// A picture that a strategy makes of a planned view, through the networks' lens.
 struct ShownView {
@@ -17,7 +42,7 @@ struct ShownView {
 };
 
 struct ShownScene {
-  SceneBuilder scene;            ///< with all that was accumulated
+  StrategyScene scene;           ///< with all that was accumulated
   std::vector<ShownView> views;  ///< in the order of the plan
 };
 

@@ -2,8 +2,10 @@
 #include "libps/train/autoencoder.h"
 
 #include <string>
+#include <vector>
 
 #include "libps/core/error.h"
+#include "libps/models/color_codes.h"
 #include "libps/train/checkpoint.h"
 #include "libps/train/layers.h"
 
@@ -115,11 +117,25 @@ void Autoencoder::move_codebook(const Tensor& pre_quant, const Tensor& codes,
   embed.copy_(sums / smoothed.unsqueeze(0));
 }
 
+namespace {
+
+TensorsByName tensors_of_colors() {
+  TensorsByName tensors;
+  const nn::Weights weights = models::color_codes();
+  for (const auto& [name, tensor] : weights.tensors()) {
+    const std::vector<std::int64_t> shape(tensor.shape.begin(), tensor.shape.end());
+    tensors[name] = torch::tensor(tensor.values).view(shape);
+  }
+  return tensors;
+}
+
+}  // namespace
+
 Autoencoder read_autoencoder(const std::filesystem::path& path, torch::Device device) {
   const std::string where = path.string();
   if (path.empty())
     throw Error("--codes", "there are no weights of a VQ-VAE", "what `train vqvae` made");
-  const TensorsByName tensors = read_tensors(path);
+  const TensorsByName tensors = where == kColors ? tensors_of_colors() : read_tensors(path);
   const auto side = [&](const char* name, int axis) {
     const auto found = tensors.find(name);
     if (found == tensors.end() || found->second.dim() <= axis) {

@@ -6,6 +6,7 @@
 
 #include "libps/models/depth_net.h"
 #include "libps/train/layers.h"
+#include "libps/train/upsample.h"
 
 namespace ps::train {
 namespace {

@@ -65,7 +65,7 @@ std::array<Discriminator::Maps, 2> Discriminator::forward(const Tensor& image, b
       const std::string name = layer_name(scale, layer);
       const int stride = layer < 3 ? 2 : 1;
       if (is_normed(layer)) {
-        x = torch::conv2d(x, spectral_weight(parameters, name, power), {}, stride, 2);
+        x = conv2d(x, spectral_weight(parameters, name, power), {}, stride, 2);
         x = torch::instance_norm(x, {}, {}, {}, {}, true, 0.1, 1e-5, false);
       } else {
         x = convolution(parameters, name, x, stride, 2);

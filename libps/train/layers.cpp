@@ -4,6 +4,25 @@
 #include <cmath>
 
 namespace ps::train {
+namespace {
+
+thread_local bool narrow_products = false;
+
+Tensor narrow(const Tensor& x) {
+  return narrow_products && x.defined() ? x.to(torch::kBFloat16) : x;
+}
+
+Tensor wide(const Tensor& x) { return x.to(torch::kFloat32); }
+
+}  // namespace
+
+NarrowProducts::NarrowProducts(bool narrow) : before_(narrow_products) { narrow_products = narrow; }
+
+NarrowProducts::~NarrowProducts() { narrow_products = before_; }
+
+Tensor conv2d(const Tensor& x, const Tensor& weight, const Tensor& bias, int stride, int padding) {
+  return wide(torch::conv2d(narrow(x), narrow(weight), narrow(bias), stride, padding));
+}
 
 void add_convolution(Parameters& p, const std::string& name, int in, int out, int kernel,
                      double gain, bool bias) {
@@ -34,11 +53,12 @@ void add_normed(Parameters& p, const std::string& name, int in, int out) {
 Tensor convolution(const Parameters& p, const std::string& name, const Tensor& x, int stride,
                    int padding) {
   const auto bias = p.trained().find(name + ".bias");
-  return torch::conv2d(x, p[name + ".weight"], bias == p.trained().end() ? Tensor() : bias->second,
-                       stride, padding);
+  return conv2d(x, p[name + ".weight"], bias == p.trained().end() ? Tensor() : bias->second, stride,
+                padding);
 }
 
 Tensor transposed(const Parameters& p, const std::string& name, const Tensor& x) {
+  // libtorch 1.13 refuses transposed convolutions of bfloat16.
   return torch::conv_transpose2d(x, p[name + ".weight"], p[name + ".bias"], 2, 1);
 }
 
@@ -51,11 +71,7 @@ Tensor normed(const Parameters& p, const std::string& name, const Tensor& x) {
   const Tensor& v = p[name + ".weight_v"];
   const Tensor weight = v * (p[name + ".weight_g"] / v.norm(2, {1}, true));
   // A 1x1 convolution stays in oneDNN's threads; a matrix product would wake the BLAS's own.
-  return torch::conv2d(x, weight.unsqueeze(2).unsqueeze(3), p[name + ".bias"]);
-}
-
-Tensor upsample_2x(const Tensor& x) {
-  return torch::upsample_bilinear2d(x, {2 * x.size(2), 2 * x.size(3)}, false);
+  return conv2d(x, weight.unsqueeze(2).unsqueeze(3), p[name + ".bias"]);
 }
 
 }  // namespace ps::train

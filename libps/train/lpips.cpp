@@ -6,6 +6,7 @@
 
 #include "libps/core/error.h"
 #include "libps/train/checkpoint.h"
+#include "libps/train/layers.h"
 
 namespace ps::train {
 namespace {
@@ -36,7 +37,7 @@ const Tensor& Lpips::at(const std::string& name) const {
 }
 
 Tensor Lpips::convolution(const std::string& name, const Tensor& x, int stride, int padding) const {
-  return torch::relu(torch::conv2d(x, at(name + ".weight"), at(name + ".bias"), stride, padding));
+  return torch::relu(conv2d(x, at(name + ".weight"), at(name + ".bias"), stride, padding));
 }
 
 std::vector<Tensor> Lpips::features(const Tensor& image) const {

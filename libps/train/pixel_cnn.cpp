@@ -65,8 +65,7 @@ class GatherTaps : public torch::autograd::Function<GatherTaps> {
 /// a matrix product would wake the BLAS's own.
 Tensor product(const Tensor& x, const Tensor& weight, const Tensor& bias) {
   const Tensor pixels = x.view({1, x.size(0), 1, x.size(1)}).permute({0, 3, 1, 2});
-  const Tensor out =
-      torch::conv2d(pixels, weight.view({weight.size(0), weight.size(1), 1, 1}), bias);
+  const Tensor out = conv2d(pixels, weight.view({weight.size(0), weight.size(1), 1, 1}), bias);
   return out.permute({0, 2, 3, 1}).reshape({x.size(0), weight.size(0)});
 }
 

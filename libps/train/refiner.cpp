@@ -5,6 +5,7 @@
 #include <string>
 
 #include "libps/train/layers.h"
+#include "libps/train/upsample.h"
 
 namespace ps::train {
 namespace {

@@ -11,6 +11,7 @@
 #include "libps/core/error.h"
 #include "libps/core/parallel.h"
 #include "libps/train/checkpoint.h"
+#include "libps/train/layers.h"
 #include "libps/train/shard.h"
 #include "libps/train/stage.h"
 
@@ -46,6 +47,13 @@ torch::Device device_of(const std::string& name) {
   if (name != "cuda") throw Error("--device", "'" + name + "' is no device", "cpu or cuda");
   if (!torch::cuda::is_available()) throw Error("--device", "there is no CUDA device", "cpu");
   return torch::kCUDA;
+}
+
+bool is_narrow(const std::string& arithmetic) {
+  if (arithmetic != "f32" && arithmetic != "bf16") {
+    throw Error("--arithmetic", "'" + arithmetic + "' is unknown", "f32 or bf16");
+  }
+  return arithmetic == "bf16";
 }
 
 double seconds_since(Clock::time_point start) {
@@ -94,6 +102,7 @@ class Run {
       : options_(options),
         progress_(progress),
         device_(device_of(options.device)),
+        narrow_(is_narrow(options.arithmetic)),
         stage_(maker_of(options.stage)(options, device_)),
         wanted_(stage_->wanted()),
         train_(options.train),
@@ -180,6 +189,7 @@ class Run {
                     turn_limit(step_, options_.steps, options_.curriculum, train_.most_turn())),
         wanted_, device_);
     augment(batch, stage_->augmentation(), generator);
+    const NarrowProducts arithmetic(narrow_);
     means_.add(
         stage_->step(batch, generator, rate_at(step_, options_.steps, options_.learning_rate)));
     ++step_;
@@ -237,6 +247,7 @@ class Run {
   TrainOptions options_;
   const TrainProgress& progress_;
   torch::Device device_;
+  bool narrow_;
   std::unique_ptr<Stage> stage_;
   Wanted wanted_;
   Dataset train_;
@@ -273,7 +284,11 @@ const std::vector<std::string>& stage_names() {
 TrainReport train(const TrainOptions& options, const TrainProgress& progress) {
   if (options.threads > 0) at::set_num_threads(options.threads);
   set_threads(options.threads);
-  return Run(options, progress).go();
+  try {
+    return Run(options, progress).go();
+  } catch (const c10::Error& error) {
+    throw Error("train " + options.stage, error.what_without_backtrace());
+  }
 }
 
 }  // namespace ps::train

@@ -13,13 +13,17 @@ namespace ps::train {
 /// TrainOptions::width of the published networks (SPEC.md 2).
 constexpr int kPaperWidth = -1;
 
+/// TrainOptions::codes that are colours.
+constexpr char kColors[] = "colours";
+
 /// What is trained, on what, for how long.
 struct TrainOptions {
   std::string stage;            ///< one of stage_names()
   std::filesystem::path train;  ///< folder of shards to train on (shard.h)
   std::filesystem::path test;   ///< folder of shards to evaluate on, never trained on; may be empty
   std::filesystem::path out;    ///< folder of the run: checkpoint, log, weights; made when missing
-  std::filesystem::path codes;  ///< weights of a trained VQ-VAE, for pixelcnn and refine
+  /// Weights of a trained VQ-VAE, for pixelcnn and refine; or kColors: models::color_codes().
+  std::filesystem::path codes;
   std::filesystem::path features;  ///< weights of LPIPS, a perceptual loss of refine; may be empty
   std::filesystem::path init;      ///< weights to begin with instead of random ones; may be empty
   int width = 0;                   ///< of the network; 0 = the size that is shipped; or kPaperWidth
@@ -30,6 +34,9 @@ struct TrainOptions {
       0;  ///< stop after so many steps of this call, as if interrupted; 0 = never
   double learning_rate = 0;    ///< 0 = the stage's own
   double frames_share = 0.35;  ///< of examples that come from real frames, where there are any
+  /// The VQ-VAE's codes stay what they are, and what was trained on them stays true: the decoder
+  /// alone is trained. With `init`.
+  bool keep_codes = false;
   /// What teaches depth: "depth", where it is known; "poses", by reprojection; "both".
   std::string supervision = "depth";
   /// Pairs are drawn whose views are turned by no more than a limit, which grows to all in so many
@@ -37,7 +44,10 @@ struct TrainOptions {
   int curriculum = -1;
   std::uint64_t seed = 0;
   std::string device = "cpu";  ///< or "cuda"
-  int threads = 0;             ///< 0 = all
+  /// Of the products of convolutions: "f32", or "bf16", which is twice as fast where the processor
+  /// has AMX; scores are always of f32.
+  std::string arithmetic = "f32";
+  int threads = 0;  ///< 0 = all
   std::int64_t save_every = 500, test_every = 1000;
   std::int64_t test_count = 128;  ///< examples of each group in an evaluation
 };

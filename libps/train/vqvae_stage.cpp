@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
+#include "libps/core/error.h"
 #include "libps/train/autoencoder.h"
 #include "libps/train/stage.h"
 
@@ -29,12 +30,19 @@ Tensor random_part(const Tensor& color, torch::Generator& generator) {
 class VqvaeStage : public Stage {
  public:
   VqvaeStage(const TrainOptions& options, torch::Device device)
-      : net_(widths_of(options), options.seed), adam_(on_device(net_.parameters, device), {}) {}
+      : net_(widths_of(options), options.seed),
+        adam_(on_device(net_.parameters, device), {}),
+        keep_codes_(options.keep_codes) {
+    if (keep_codes_ && options.init.empty()) {
+      throw Error("--keep-codes", "there are no codes to keep", "--init with weights of a VQ-VAE");
+    }
+  }
 
   StageDefaults defaults() const override { return {24, 8000, 1e-3}; }
 
   Values step(const Batch& batch, torch::Generator generator, double learning_rate) override {
     const Tensor color = random_part(batch.color, generator);
+    if (keep_codes_) return decoder_step(color, learning_rate);
     const Tensor pre_quant = net_.encode(color);
     const Tensor codes = net_.nearest(pre_quant);
     const Tensor embedded = net_.embed(codes);
@@ -50,6 +58,19 @@ class VqvaeStage : public Stage {
             {"skipped", taken ? 0 : 1}};
   }
 
+  /// The encoder has no gradient and stays as it is.
+  Values decoder_step(const Tensor& color, double learning_rate) {
+    Tensor embedded;
+    {
+      const torch::NoGradGuard guard;
+      embedded = net_.embed(net_.nearest(net_.encode(color)));
+    }
+    const Tensor l2 = torch::mse_loss(net_.decode(embedded), color);
+    adam_.zero_gradients();
+    l2.backward();
+    return {{"l2", l2.item<double>()}, {"skipped", adam_.step(learning_rate) ? 0 : 1}};
+  }
+
   Values test(const Batch& batch) override {
     const torch::NoGradGuard guard;
     const Tensor codes = net_.nearest(net_.encode(batch.color));
@@ -59,7 +80,9 @@ class VqvaeStage : public Stage {
     const Tensor used = torch::bincount(codes.flatten(), {}, n);
     const Tensor share = used.to(torch::kFloat64) / used.sum();
     const double entropy = -(share * torch::log2(share.clamp_min(1e-12))).sum().item<double>();
-    return {{"psnr", (-10 * torch::log10(error)).mean().item<double>()}, {"code_bits", entropy}};
+    return {{"psnr", (-10 * torch::log10(error)).mean().item<double>()},
+            {"code_bits", entropy},
+            {"codes_of_batch", (used > 0).sum().item<double>()}};
   }
 
   std::vector<std::vector<Tensor>> pictures(const Batch& batch) override {
@@ -77,6 +100,7 @@ class VqvaeStage : public Stage {
  private:
   Autoencoder net_;
   Adam adam_;
+  bool keep_codes_;
 };
 
 }  // namespace

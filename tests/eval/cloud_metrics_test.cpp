@@ -183,5 +183,33 @@ TEST(CloudMetrics, do_not_depend_on_the_number_of_threads) {
   set_threads(0);
 }
 
+TEST(ShareInFront, counts_points_of_the_origin_before_the_surface_and_no_others) {
+  View seen;
+  seen.depth = Depth(4, 4, 2.f);
+  seen.depth(0, 0) = 0;  // unknown
+  seen.intrinsics = {2, 2, 1.5, 1.5, 4, 4};
+  seen.world_from_cam.translation() = Eigen::Vector3d(0, 0, 1);
+  const auto at = [&](int u, int v, double z) {
+    const Eigen::Vector3d p =
+        seen.world_from_cam * Eigen::Vector3d((u - 1.5) / 2 * z, (v - 1.5) / 2 * z, z);
+    Point made =
+        point(static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z()));
+    made.origin = static_cast<std::uint8_t>(Origin::outpainted);
+    return made;
+  };
+  Cloud cloud;
+  EXPECT_TRUE(std::isnan(share_in_front(cloud, Origin::outpainted, seen)));
+  cloud.push_back(at(1, 1, 1.5));   // before
+  cloud.push_back(at(2, 1, 1.99));  // within the tolerance
+  cloud.push_back(at(1, 2, 3));     // behind
+  cloud.push_back(at(0, 0, .5));    // where nothing is known
+  cloud.push_back(at(9, 1, .5));    // beside the image
+  cloud.push_back(at(1, 1, -1));    // behind the camera
+  cloud.push_back(at(1, 1, .5));    // of another origin
+  cloud.back().origin = static_cast<std::uint8_t>(Origin::observed);
+  EXPECT_DOUBLE_EQ(share_in_front(cloud, Origin::outpainted, seen), 1. / 6);
+  EXPECT_DOUBLE_EQ(share_in_front(cloud, Origin::observed, seen), 1);
+}
+
 }  // namespace
 }  // namespace ps

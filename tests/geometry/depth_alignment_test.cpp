@@ -96,6 +96,8 @@ TEST(AlignDepth, the_seen_half_of_a_room_leads_to_the_other) {
     EXPECT_TRUE(aligned.agreed) << aligned.why;
     EXPECT_LT(aligned.seam_step, 0.01) << yaw;
     EXPECT_LT(aligned.seam_step, aligned.seam_step_before) << yaw;
+    EXPECT_GT(aligned.seam_step_seen, 0) << yaw;
+    EXPECT_NEAR(aligned.seam_step, aligned.seam_step_seen, 0.005) << yaw;  // walls go on
     before += abs_rel(fitted(c, aligned), c);
     after += abs_rel(aligned.depth, c);
   }

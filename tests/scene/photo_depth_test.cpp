@@ -50,23 +50,46 @@ double greatest_ratio(const Depth& a, const Depth& b) {
   return cv::norm(ratio, cv::NORM_INF);
 }
 
-TEST(PhotoDepth, a_square_photo_gets_what_the_bare_network_says) {
-  const Image photo = picture(256, 256);
+Image mirrored(const Image& image) {
+  Image out;
+  cv::flip(image, out, 1);
+  return out;
+}
+
+/// The bare network's logarithm of depth.
+cv::Mat1f said_of(const Image& photo, const DepthScale& scale) {
   nn::Tensor image({1, 256, 256, 3}), raw({1, 256, 256, 1});
   for (std::size_t i = 0; i < photo.total() * 3; ++i) {
     image.data()[i] = photo.ptr<float>()[i] * 2 - 1;
   }
   nn::Workspace workspace;
   net().forward(image, raw, workspace);
+  nn::Tensor depth(raw.shape());
+  models::depth_of_raw(raw, scale.min_z, scale.max_z, depth);
+  cv::Mat1f logarithm;
+  cv::log(cv::Mat1f(256, 256, depth.data()), logarithm);
+  return logarithm;
+}
+
+TEST(PhotoDepth, a_square_photo_gets_what_the_bare_network_says_of_it_and_its_mirror_image) {
+  const Image photo = picture(256, 256);
   for (const DepthScale& scale : {DepthScale{1, 100, 1}, DepthScale{0.25f, 8, 0.5}}) {
-    nn::Tensor expected(raw.shape());
-    models::depth_of_raw(raw, scale.min_z, scale.max_z, expected);
+    cv::Mat1f other, expected;
+    cv::flip(said_of(mirrored(photo), scale), other, 1);
+    cv::exp((said_of(photo, scale) + other) / 2, expected);
     const Depth depth = depth_of(photo, scale);
-    EXPECT_LT(greatest_ratio(depth, Depth(256, 256, expected.data())), 1e-5);
+    EXPECT_LT(greatest_ratio(depth, expected), 1e-5);
     double least = 0, greatest = 0;
     cv::minMaxLoc(depth, &least, &greatest);
     EXPECT_GT(greatest, 1.05 * least) << "a network that says nothing proves nothing";
   }
+}
+
+TEST(PhotoDepth, of_a_mirror_image_is_mirrored) {
+  const Image photo = picture(400, 256);
+  Depth other;
+  cv::flip(depth_of(mirrored(photo)), other, 1);
+  EXPECT_LT(greatest_ratio(depth_of(photo), other), 1e-4);
 }
 
 TEST(PhotoDepth, a_wide_photo_has_no_step_where_squares_begin_and_end) {

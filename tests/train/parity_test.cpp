@@ -20,9 +20,11 @@
 #include "libps/train/completions.h"
 #include "libps/train/depth_net.h"
 #include "libps/train/discriminator.h"
+#include "libps/train/layers.h"
 #include "libps/train/lpips.h"
 #include "libps/train/pixel_cnn.h"
 #include "libps/train/refiner.h"
+#include "libps/train/upsample.h"
 #include "tests/support/random_weights.h"
 #include "tests/train/support.h"
 
@@ -87,6 +89,37 @@ TEST(TrainedDepthNet, gives_what_models_depth_net_gives) {
   nn::Workspace workspace;
   models::DepthNet(weights_of(net.parameters)).forward(to_ours(image), raw, workspace);
   EXPECT_LT(difference(raw, net.forward(image, false)), 1e-5);
+}
+
+double most_apart(const Tensor& a, const Tensor& b) { return (a - b).abs().max().item<double>(); }
+
+TEST(Upsampling, gives_what_libtorch_gives_and_its_gradients) {
+  for (const auto& [h, w] : {std::make_pair(5, 3), std::make_pair(1, 1), std::make_pair(8, 16)}) {
+    const Tensor x = torch::rand({2, 3, h, w}, generator_of(1, 0)).requires_grad_();
+    const Tensor weight = torch::rand({2, 3, 2 * h, 2 * w}, generator_of(2, 0));
+    const Tensor ours = upsample_2x(x);
+    const Tensor other = torch::upsample_bilinear2d(x, {2 * h, 2 * w}, false);
+    EXPECT_LT(most_apart(ours, other), 1e-6);
+    const auto gradient = [&](const Tensor& y) {
+      return torch::autograd::grad({(y * weight).sum()}, {x})[0];
+    };
+    EXPECT_LT(most_apart(gradient(ours), gradient(other)), 1e-5);
+  }
+}
+
+TEST(NarrowProducts, change_digits_where_they_are_asked_for_and_nowhere_else) {
+  const DepthNet net(4, 1);
+  const Tensor image = picture(1, 256), exact = net.forward(image, false);
+  {
+    const NarrowProducts on(true);
+    const Tensor narrow = net.forward(image, false);
+    EXPECT_EQ(narrow.scalar_type(), torch::kFloat32);
+    EXPECT_GT(most_apart(narrow, exact), 0);
+    EXPECT_LT(most_apart(narrow, exact), .05 * exact.abs().max().item<double>());
+    const NarrowProducts off(false);
+    EXPECT_EQ(most_apart(net.forward(image, false), exact), 0);
+  }
+  EXPECT_EQ(most_apart(net.forward(image, false), exact), 0);
 }
 
 TEST(TrainedAutoencoder, gives_what_models_autoencoder_gives) {

@@ -138,6 +138,36 @@ TEST_F(Training, goes_on_to_the_same_bytes_after_an_interruption) {
   }
 }
 
+TEST_F(Training, of_a_decoder_keeps_the_codes) {
+  TrainOptions o = options("vqvae", "decoder");
+  o.width = 8;
+  o.keep_codes = true;
+  EXPECT_NE(message_of(o).find("--keep-codes"), std::string::npos);
+  o.init = o.codes;
+  o.arithmetic = "bf16";
+  train(o, {});
+  const nn::Weights before = read_weights(o.init),
+                    after = read_weights(o.out / "weights.safetensors");
+  const auto same = [&](const std::string& name) {
+    return before.tensors().at(name).values == after.tensors().at(name).values;
+  };
+  EXPECT_TRUE(same("vqvae.quantize_t.embed"));
+  EXPECT_TRUE(same("vqvae.enc_b.blocks.0.weight"));
+  EXPECT_TRUE(same("vqvae.quantize_conv_t.bias"));
+  EXPECT_FALSE(same("vqvae.dec.blocks.6.weight"));
+}
+
+TEST_F(Training, of_completions_in_colours_needs_no_autoencoder) {
+  TrainOptions o = options("pixelcnn", "colours");
+  o.width = 4;
+  o.codes = kColors;
+  o.arithmetic = "bf16";
+  const TrainReport report = train(o, {});
+  EXPECT_GT(report.scores.at("rooms_missing_bits"), 0);
+  o.arithmetic = "decimal";
+  EXPECT_NE(message_of(o).find("'decimal'"), std::string::npos);
+}
+
 TEST_F(Training, stops_when_told_to_and_can_be_gone_on_with) {
   const TrainOptions o = options("depth", "stopped");
   TrainOptions often = o;
