@@ -19,6 +19,7 @@
 #include "io/safetensors.h"
 #include "io/trajectory.h"
 #include "libps/geometry/lift.h"
+#include "tests/support/random_weights.h"
 
 namespace fs = std::filesystem;
 
@@ -255,6 +256,16 @@ void write_depth_networks(const fs::path& dir) {
   write("turned_scale.safetensors", {{"min_z", "10"}, {"max_z", "1"}});
 }
 
+/// A narrow LPIPS by chance.
+void write_lpips(const fs::path& dir) {
+  const nn::Weights weights = models::random_lpips(8);
+  TensorMap tensors;
+  for (const auto& [name, tensor] : weights.tensors()) {
+    tensors[name] = FileTensor::of(tensor.values, tensor.shape);
+  }
+  write_safetensors(dir / "lpips.safetensors", tensors);
+}
+
 /// The photo in other sizes, and one that says its focal length: in its EXIF block, IFD0 points to
 /// an EXIF directory with FocalLengthIn35mmFilm = 28.
 void write_sized_photos(const fs::path& dir) {
@@ -300,6 +311,7 @@ int main(int argc, char** argv) try {
   ps::write_tensors(dir);
   ps::write_weights(dir);
   ps::write_depth_networks(dir);
+  ps::write_lpips(dir);
   ps::write_sized_photos(dir);
   return 0;
 } catch (const std::exception& error) {
