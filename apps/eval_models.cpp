@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/eval_models.h"
 
-#include "apps/scene_input.h"
 #include "io/weights_file.h"
+#include "libps/scene/photo_depth.h"
 
 namespace ps::apps {
 
@@ -27,7 +27,7 @@ void complete_depth(View& view, const DepthModel& model, bool estimate) {
   if (estimate || view.depth.empty() || cv::countNonZero(view.depth) == 0) {
     view.depth = photo_depth(model.net, view.color, view.intrinsics, model.scale);
   } else {
-    fill_holes(view, model);
+    fill_holes(view, model.net, model.scale);
   }
 }
 

@@ -16,9 +16,9 @@
 #include "io/rgbd_folder.h"
 #include "io/trajectory.h"
 #include "libps/core/error.h"
-#include "libps/geometry/depth_alignment.h"
 #include "libps/geometry/relative_pose.h"
 #include "libps/scene/camera_path.h"
+#include "libps/scene/photo_depth.h"
 #include "libps/scene/second_view.h"
 
 namespace fs = std::filesystem;
@@ -65,6 +65,14 @@ View shrunk(const View& view, int longest, Json& report) {
   return small;
 }
 
+Json report_of(const FilledHoles& filled) {
+  if (filled.pixels == 0) return {{"pixels", 0}};
+  Json report = {
+      {"pixels", filled.pixels}, {"agreed", filled.agreed}, {"residual", filled.residual}};
+  if (!filled.agreed) report["why"] = filled.why;
+  return report;
+}
+
 /// A photo with its depth; its pose is the scene's beginning.
 View read_one(const SceneInputArguments& a, const std::string& file, const std::string& depth,
               const DepthModel* model, const Context& context, Json& report) {
@@ -83,7 +91,9 @@ View read_one(const SceneInputArguments& a, const std::string& file, const std::
     view.depth = read_depth_for(depth, a.depth_scale, photo.color.size(), context);
     report["depth"] = {{"from", depth}};
     check(view, file);
-    if (model != nullptr) report["depth"]["filled"] = fill_holes(view, *model);
+    if (model != nullptr) {
+      report["depth"]["filled"] = report_of(fill_holes(view, model->net, model->scale));
+    }
   }
   check(view, file);
   return view;
@@ -159,18 +169,6 @@ void add_second(const SceneInputArguments& a, const View& first, const DepthMode
 }
 
 }  // namespace
-
-Json fill_holes(View& view, const DepthModel& model) {
-  const Mask known = view.depth > 0, unknown = ~known;
-  const int holes = cv::countNonZero(unknown);
-  if (holes == 0) return {{"pixels", 0}};
-  const Depth guess = photo_depth(model.net, view.color, view.intrinsics, model.scale);
-  const AlignedDepth aligned = align_depth(guess, view.depth, known & 1, unknown & 1);
-  aligned.depth.copyTo(view.depth, unknown);
-  Json report = {{"pixels", holes}, {"agreed", aligned.agreed}, {"residual", aligned.residual}};
-  if (!aligned.agreed) report["why"] = aligned.why;
-  return report;
-}
 
 bool SceneInputArguments::is_folder() const {
   std::error_code ignored;

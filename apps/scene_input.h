@@ -43,10 +43,6 @@ struct SceneInput {
   Json report;              ///< what the report says of lens and depth
 };
 
-/// @brief Fills the holes of a measured depth with the network's, which is made to continue it.
-/// @return what the report says of it
-Json fill_holes(View& view, const DepthModel& model);
-
 /// @brief Reads it all. Depth that is not given, or has holes, is estimated by `model`.
 /// @param model    null = depth must be given
 /// @param longest  pixels: a photo with a longer side is shrunk to that before it is lifted

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "libps/core/error.h"
+#include "libps/geometry/depth_alignment.h"
 
 namespace ps {
 namespace {
@@ -150,6 +151,20 @@ Depth photo_depth(const models::DepthNet& net, const Image& photo, const Intrins
   cv::exp(resized_to(logarithm, photo.size()), depth);
   const double focal = std::sqrt(lens.fx * lens.fy) * shrink;  // pixels of a square
   return depth * (focal / (scale.canonical_focal * kSide));
+}
+
+FilledHoles fill_holes(View& view, const models::DepthNet& net, const DepthScale& scale) {
+  const Mask known = view.depth > 0, unknown = ~known;
+  FilledHoles filled;
+  filled.pixels = cv::countNonZero(unknown);
+  if (filled.pixels == 0) return filled;
+  const Depth guess = photo_depth(net, view.color, view.intrinsics, scale);
+  const AlignedDepth aligned = align_depth(guess, view.depth, known & 1, unknown & 1);
+  aligned.depth.copyTo(view.depth, unknown);
+  filled.agreed = aligned.agreed;
+  filled.why = aligned.why;
+  filled.residual = aligned.residual;
+  return filled;
 }
 
 }  // namespace ps

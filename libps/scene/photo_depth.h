@@ -5,6 +5,7 @@
 
 #include "libps/core/image.h"
 #include "libps/geometry/camera.h"
+#include "libps/geometry/view.h"
 #include "libps/models/depth_net.h"
 
 namespace ps {
@@ -44,5 +45,16 @@ void check(const DepthScale& scale, const std::string& where);
 /// gives what is not finite.
 Depth photo_depth(const models::DepthNet& net, const Image& photo, const Intrinsics& lens,
                   const DepthScale& scale = {});
+
+struct FilledHoles {
+  int pixels = 0;      ///< that had no depth
+  bool agreed = true;  ///< the estimate could be aligned to the known depth; else that is continued
+  std::string why;     ///< why not
+  double residual = 0;  ///< of the alignment (depth_alignment.h)
+};
+
+/// @brief Gives a depth to the pixels that have none (0): the network's, made to continue what is
+/// known as align_depth() does. Throws ps::Error as that and photo_depth() do.
+FilledHoles fill_holes(View& view, const models::DepthNet& net, const DepthScale& scale);
 
 }  // namespace ps

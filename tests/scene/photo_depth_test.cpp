@@ -209,5 +209,22 @@ TEST(PhotoDepth, a_network_that_gives_no_number_is_an_error) {
   EXPECT_THROW(photo_depth(wild, picture(400, 256), intrinsics_from_fov(400, 256, 60)), Error);
 }
 
+TEST(FillHoles, leaves_what_is_known_and_goes_on_from_it) {
+  View view;
+  view.color = picture(256, 256);
+  view.intrinsics = intrinsics_from_fov(256, 256, 60);
+  view.depth = photo_depth(net(), view.color, view.intrinsics) * 3;  // in another unit
+  const Depth truth = view.depth.clone();
+  EXPECT_EQ(fill_holes(view, net(), {}).pixels, 0);
+  view.depth(cv::Rect(100, 80, 40, 60)) = 0;
+  const FilledHoles filled = fill_holes(view, net(), {});
+  EXPECT_EQ(filled.pixels, 40 * 60);
+  EXPECT_TRUE(filled.agreed) << filled.why;
+  EXPECT_LT(greatest_ratio(view.depth, truth), 0.02);
+  Mask known(256, 256, 1);
+  known(cv::Rect(100, 80, 40, 60)) = 0;
+  EXPECT_EQ(cv::norm(view.depth, truth, cv::NORM_INF, known), 0);
+}
+
 }  // namespace
 }  // namespace ps
