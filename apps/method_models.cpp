@@ -37,8 +37,10 @@ MethodModels::MethodModels(const std::string& weights, const std::vector<std::st
   }
   scene_ = std::make_unique<SceneModels>(weights, "both", context);
   if (std::find(methods.begin(), methods.end(), "rgb") == methods.end()) return;
+  const fs::path file = rgb_weights(weights);
   rgb_autoencoder_ = std::make_unique<models::Autoencoder>(models::color_codes());
-  rgb_pixel_cnn_ = std::make_unique<models::PixelCnn>(read_weights(rgb_weights(weights)));
+  rgb_pixel_cnn_ = std::make_unique<models::PixelCnn>(read_weights(file));
+  check_codes(*rgb_autoencoder_, *rgb_pixel_cnn_, file.string());
 }
 
 MethodNetworks MethodModels::networks() const {

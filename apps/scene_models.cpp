@@ -32,6 +32,15 @@ const std::vector<std::string>& selection_names() {
   return names;
 }
 
+void check_codes(const models::Autoencoder& autoencoder, const models::PixelCnn& pixel_cnn,
+                 const std::string& file) {
+  if (pixel_cnn.codes() == autoencoder.codes()) return;
+  throw Error(file,
+              "the autoencoder has " + std::to_string(autoencoder.codes()) +
+                  " codes, the PixelCNN " + std::to_string(pixel_cnn.codes()),
+              "networks that were trained together");
+}
+
 SceneModels::SceneModels(const std::string& weights, const std::string& selection,
                          const Context& context) {
   const auto read = [&](const char* name) {
@@ -54,12 +63,7 @@ SceneModels::SceneModels(const std::string& weights, const std::string& selectio
     classifier_ = std::make_unique<models::Classifier>(read("classifier.safetensors"));
     scorers_["classifier"] = outpaint::entropy_scorer(*classifier_);
   }
-  if (pixel_cnn_->codes() != autoencoder_->codes()) {
-    throw Error(file_of(weights, "pixelcnn.safetensors").string(),
-                "the autoencoder has " + std::to_string(autoencoder_->codes()) +
-                    " codes, the PixelCNN " + std::to_string(pixel_cnn_->codes()),
-                "networks that were trained together");
-  }
+  check_codes(*autoencoder_, *pixel_cnn_, file_of(weights, "pixelcnn.safetensors").string());
 }
 
 SceneNetworks SceneModels::networks() const {

@@ -19,6 +19,11 @@ std::string depth_weights(const std::string& weights);
 /// @return the names that --select takes: both, discriminator, classifier, likelihood
 const std::vector<std::string>& selection_names();
 
+/// @brief Throws ps::Error, naming the PixelCNN's file, unless it continues the autoencoder's
+/// codes.
+void check_codes(const models::Autoencoder& autoencoder, const models::PixelCnn& pixel_cnn,
+                 const std::string& file);
+
 /// @brief The networks of a scene, from weights files.
 class SceneModels {
  public:

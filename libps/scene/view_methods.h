@@ -21,8 +21,8 @@ struct MethodView {
 struct MethodNetworks {
   SceneNetworks scene;  ///< of `ours`, with the scorers that it selects by
   std::map<std::string, outpaint::Scorer> scorers;  ///< "classifier" and "discriminator"
-  /// Of `rgb`: its autoencoder's codes are 512 colours. Without refiner or scorers it takes those
-  /// of `scene`.
+  /// Of `rgb`: its autoencoder's codes are colours (models/color_codes.h). Without refiner or
+  /// scorers it takes those of `scene`.
   outpaint::Outpainter::Networks rgb;
 };
 

@@ -9,6 +9,7 @@
 #include "libps/core/error.h"
 #include "libps/core/parallel.h"
 #include "libps/eval/image_metrics.h"
+#include "libps/models/color_codes.h"
 #include "tests/support/box_world.h"
 #include "tests/support/random_networks.h"
 
@@ -36,7 +37,10 @@ MethodNetworks method_networks() {
   MethodNetworks networks;
   networks.scene = random_networks().all();
   networks.scorers = {{"classifier", brightness(false)}, {"discriminator", brightness(true)}};
-  networks.rgb = networks.scene.outpaint;
+  static const models::Autoencoder kColors(models::color_codes());
+  static const models::PixelCnn kOfColors(models::random_pixel_cnn(11, kColors.codes()));
+  networks.rgb.autoencoder = &kColors;
+  networks.rgb.pixel_cnn = &kOfColors;
   return networks;
 }
 
