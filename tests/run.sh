@@ -38,7 +38,7 @@ sanitized() {
   build asan
   suite "address, undefined" asan -LE networks
   export TSAN_OPTIONS=suppressions=$root/tests/tsan.supp
-  build tsan core_test geometry_test nn_test models_test outpaint_test scene_test
+  build tsan core_test eval_test geometry_test nn_test models_test outpaint_test scene_test
   # Features of photos are found by OpenCV's threads, not by ours, and take minutes here.
   suite threads tsan -E '_NOT_BUILT|^Apps|^Install|SecondPose|SecondView|PhotoMatches|MatchPhotos'
   build fuzz "${readers[@]%.cpp}"
