@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/scene_arguments.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -130,6 +131,10 @@ PlanOptions SceneArguments::plan() const {
   PlanOptions options;
   options.strategy = strategy_of(strategy);
   options.directions = directions;
+  for (auto d = directions.begin(); d != directions.end(); ++d) {
+    if (std::find(directions.begin(), d, *d) == d) continue;
+    throw CLI::ValidationError("--directions", *d + " is given twice; expected each once");
+  }
   options.views_per_direction = views_per_direction;
   options.range.range_horizontal = parse_angle(range_horizontal, "--range-horizontal");
   options.range.range_vertical = parse_angle(range_vertical, "--range-vertical");

@@ -77,6 +77,7 @@ Json report_of(const FilledHoles& filled) {
 View read_one(const SceneInputArguments& a, const std::string& file, const std::string& depth,
               const DepthModel* model, const Context& context, Json& report) {
   const Photo photo = read_photo(file);
+  check_photo(photo.color, file);
   const PhotoLens lens = choose_lens(a.lens, photo, file, context);
   View view;
   view.world_from_cam = kPhotoPose;

@@ -18,15 +18,6 @@ constexpr int kSide = models::DepthNet::kMultiple;
 constexpr int kMostApart = 160;  ///< from one square to the next, pixels
 constexpr int kMostAspect = 100;
 
-void check(const Image& photo) {
-  if (photo.empty()) throw Error("photo", "has no pixels", "at least one");
-  const auto [shorter, longer] = std::minmax(photo.cols, photo.rows);
-  if (longer / shorter > kMostAspect) {
-    throw Error("photo", "is " + std::to_string(photo.cols) + "x" + std::to_string(photo.rows),
-                "a long side of at most " + std::to_string(kMostAspect) + " short ones");
-  }
-}
-
 /// Averages where it shrinks.
 template <class Pixels>
 Pixels resized_to(const Pixels& image, cv::Size size) {
@@ -116,6 +107,15 @@ cv::Mat1f blended(const std::vector<cv::Mat1f>& squares, const std::vector<int>&
 
 }  // namespace
 
+void check_photo(const Image& photo, const std::string& where) {
+  if (photo.empty()) throw Error(where, "has no pixels", "at least one");
+  const auto [shorter, longer] = std::minmax(photo.cols, photo.rows);
+  if (longer / shorter > kMostAspect) {
+    throw Error(where, "is " + std::to_string(photo.cols) + "x" + std::to_string(photo.rows),
+                "a long side of at most " + std::to_string(kMostAspect) + " short ones");
+  }
+}
+
 void check(const DepthScale& scale, const std::string& where) {
   const bool sound = scale.min_z > 0 && scale.max_z > scale.min_z && std::isfinite(scale.max_z) &&
                      scale.canonical_focal > 0 && std::isfinite(scale.canonical_focal);
@@ -125,7 +125,7 @@ void check(const DepthScale& scale, const std::string& where) {
 
 Depth photo_depth(const models::DepthNet& net, const Image& photo, const Intrinsics& lens,
                   const DepthScale& scale) {
-  check(photo);
+  check_photo(photo, "photo");
   check(scale, "photo_depth");
   check(lens, "photo_depth");
   // Squares stand side by side: an upright photo's depth is made on its side.

@@ -22,6 +22,10 @@ struct DepthScale {
 /// are finite.
 void check(const DepthScale& scale, const std::string& where);
 
+/// @brief Throws ps::Error, naming `where`, when a photo is empty or longer than 100 times its
+/// short side.
+void check_photo(const Image& photo, const std::string& where);
+
 /// @brief Guesses the depth of a photo of any size, of an aspect up to 100, and of any focal
 /// length.
 ///

@@ -71,7 +71,7 @@ app_test(scene_of_odd_photos_is_made_or_refused_in_one_line [=[
     works scene $S/$p.png --fov 60 -o $p --samples 1 --directions left
     writes $p/scene.ply
   done
-  fails 1 '500x2.*100 short' scene $S/p500x2.png --fov 60 -o t --samples 1]=])
+  fails 1 'p500x2.png: is 500x2.*100 short' scene $S/p500x2.png --fov 60 -o t --samples 1]=])
 app_test(scene_of_odd_ranges [=[
   works scene $S/photo.png --fov 70 -o s --samples 1 --directions left --range-horizontal 0
   grep -q 'nothing is missing' s/report.json
@@ -104,5 +104,6 @@ app_test(scene_refuses_what_it_cannot_do [=[
   fails 2 "'0'; expected 1 to 1000, or auto" scene $S/photo.png -o a --samples 0
   fails 2 'refine-best' scene $S/photo.png -o a --samples auto --refine-best 3
   fails 2 'directions' scene $S/photo.png -o a --directions back
+  fails 2 'left is given twice' scene $S/photo.png -o a --directions left,up,left
   fails 1 'vqvae.safetensors' scene $S/photo.png -o a --weights $S
   fails 1 'absent' scene $S/photo.png -o a --weights absent.pth]=])
