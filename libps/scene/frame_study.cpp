@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/scene/frame_study.h"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <tuple>
+
+#include "libps/core/error.h"
+#include "libps/core/parallel.h"
+#include "libps/eval/statistics.h"
+
+namespace ps {
+namespace {
+
+constexpr std::size_t kLeastOverlap = 40;            ///< pixels; less is no pair
+constexpr float kDarkest = .04f, kBrightest = .97f;  ///< beyond, sensors clip
+constexpr double kWideTolerance = 0.25;              ///< share; scales may be this far apart
+constexpr int kRounds = 4;                           ///< of evening out scales
+constexpr double kAnchor = 1e-3;                     ///< of unknowns to 0, in pairs
+
+/// A frame, reduced, and the least and greatest depth around each of its pixels.
+struct Small {
+  View view;
+  Depth nearest, farthest;
+  bool usable() const { return !view.depth.empty(); }
+};
+
+Small reduced(const View& view, int width, const std::string& where) {
+  Small small;
+  if (view.depth.empty()) return small;
+  check(view, where);
+  const double scale = std::min(1.0, static_cast<double>(width) / view.depth.cols);
+  const cv::Size size(std::max(1, static_cast<int>(std::lround(view.depth.cols * scale))),
+                      std::max(1, static_cast<int>(std::lround(view.depth.rows * scale))));
+  small.view.world_from_cam = view.world_from_cam;
+  small.view.intrinsics = resized(view.intrinsics, size.width, size.height);
+  cv::resize(view.color, small.view.color, size, 0, 0, cv::INTER_AREA);
+  cv::resize(view.depth, small.view.depth, size, 0, 0, cv::INTER_NEAREST_EXACT);
+  cv::patchNaNs(small.view.depth, 0);
+  small.view.depth.setTo(0, small.view.depth < 0);
+  const cv::Mat1b window(3, 3, 1);
+  Depth known = small.view.depth.clone();
+  cv::dilate(known, small.farthest, window);
+  known.setTo(1e9f, known == 0);
+  cv::erode(known, small.nearest, window);
+  return small;
+}
+
+/// What the pixels of one frame say in another.
+struct Pair {
+  std::size_t a = 0, b = 0;
+  std::size_t agree = 0, before = 0;    ///< pixels; before: the other frame sees through it
+  std::vector<double> color[3], depth;  ///< log ratios, a over b
+};
+
+void compare(const Small& from, const Small& to, double scale_from, double scale_to,
+             double tolerance, bool swapped, Pair* pair) {
+  const Pose to_from_from = to.view.world_from_cam.inverse() * from.view.world_from_cam;
+  const Depth& depth = from.view.depth;
+  for (int y = 0; y < depth.rows; ++y) {
+    for (int x = 0; x < depth.cols; ++x) {
+      if (!(depth(y, x) > 0)) continue;
+      const Eigen::Vector3d p =
+          to_from_from * from.view.intrinsics.lift(x, y, depth(y, x) * scale_from);
+      if (!(p.z() > 0)) continue;
+      const Eigen::Vector2d at = to.view.intrinsics.project(p);
+      if (!(at.x() > 0 && at.y() > 0 && at.x() < to.view.depth.cols - 1 &&
+            at.y() < to.view.depth.rows - 1)) {
+        continue;
+      }
+      const int u = static_cast<int>(std::lround(at.x())),
+                v = static_cast<int>(std::lround(at.y()));
+      const double there = to.view.depth(v, u) * scale_to;
+      if (!(there > 0) || p.z() > to.farthest(v, u) * scale_to * (1 + tolerance)) continue;
+      if (p.z() < to.nearest(v, u) * scale_to * (1 - tolerance)) {
+        ++pair->before;
+        continue;
+      }
+      ++pair->agree;
+      const double sign = swapped ? -1 : 1;
+      pair->depth.push_back(sign * std::log(p.z() / there));
+      const cv::Vec3f ours = from.view.color(y, x), theirs = to.view.color(v, u);
+      for (int c = 0; c < 3; ++c) {
+        const bool told =
+            std::min(ours[c], theirs[c]) > kDarkest && std::max(ours[c], theirs[c]) < kBrightest;
+        if (told) pair->color[c].push_back(sign * std::log(ours[c] / theirs[c]));
+      }
+    }
+  }
+}
+
+/// Pairs of frames near each other in the stream, and of others evenly spread.
+std::vector<Pair> plan_pairs(const std::vector<Small>& frames, int partners) {
+  const std::size_t n = frames.size();
+  std::vector<std::size_t> steps;
+  const auto half = static_cast<std::size_t>(std::max(1, partners / 2));
+  for (std::size_t i = 1; i <= half && i < n; ++i) {
+    steps.push_back(i <= half / 2 ? i : half / 2 + (i - half / 2) * (n - half / 2) / (half + 1));
+  }
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::size_t last = 0;
+    for (const std::size_t step : steps) {
+      if (step <= last || i + step >= n) continue;
+      last = step;
+      if (!frames[i].usable() || !frames[i + step].usable()) continue;
+      pairs.emplace_back();
+      pairs.back().a = i;
+      pairs.back().b = i + step;
+    }
+  }
+  return pairs;
+}
+
+void hold_against_each_other(const std::vector<Small>& frames, const std::vector<double>& scales,
+                             double tolerance, std::vector<Pair>* pairs) {
+  parallel_for(pairs->size(), [&](std::size_t i) {
+    Pair fresh;
+    fresh.a = (*pairs)[i].a;
+    fresh.b = (*pairs)[i].b;
+    const Small &a = frames[fresh.a], &b = frames[fresh.b];
+    compare(a, b, scales[fresh.a], scales[fresh.b], tolerance, false, &fresh);
+    compare(b, a, scales[fresh.b], scales[fresh.a], tolerance, true, &fresh);
+    (*pairs)[i] = std::move(fresh);
+  });
+}
+
+/// The x of least squares of x_a - x_b = the pairs' median ratio; they average to 0.
+Eigen::VectorXd evened(std::size_t count, const std::vector<Pair>& pairs,
+                       const std::function<const std::vector<double>&(const Pair&)>& ratios) {
+  std::vector<Eigen::Triplet<double>> entries;
+  const auto n = static_cast<Eigen::Index>(count);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
+  for (Eigen::Index i = 0; i < n; ++i) entries.emplace_back(i, i, kAnchor);
+  for (const Pair& pair : pairs) {
+    if (ratios(pair).size() < kLeastOverlap) continue;
+    const double ratio = median(ratios(pair));
+    const auto a = static_cast<Eigen::Index>(pair.a), b = static_cast<Eigen::Index>(pair.b);
+    for (const auto& [i, j, w] : {std::tuple(a, a, 1.), std::tuple(b, b, 1.), std::tuple(a, b, -1.),
+                                  std::tuple(b, a, -1.)}) {
+      entries.emplace_back(i, j, w);
+    }
+    right[a] += ratio;
+    right[b] -= ratio;
+  }
+  Eigen::SparseMatrix<double> matrix(n, n);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(right);
+}
+
+void refuse(const std::vector<Pair>& pairs, const FrameStudyOptions& options,
+            std::vector<FrameWord>* words) {
+  std::vector<std::vector<double>> shares(words->size());
+  for (const Pair& pair : pairs) {
+    const std::size_t seen = pair.agree + pair.before;
+    if (seen < kLeastOverlap) continue;
+    const double share = static_cast<double>(pair.before) / static_cast<double>(seen);
+    shares[pair.a].push_back(share);
+    shares[pair.b].push_back(share);
+  }
+  std::vector<double> usual;
+  for (std::size_t i = 0; i < words->size(); ++i) {
+    if (shares[i].empty()) continue;
+    (*words)[i].contradicted = median(shares[i]);
+    usual.push_back((*words)[i].contradicted);
+  }
+  if (usual.empty()) return;
+  const double most = std::max(options.contradicted, 3 * median(usual));
+  for (FrameWord& word : *words) word.refused = options.refuse && word.contradicted > most;
+}
+
+}  // namespace
+
+std::vector<FrameWord> study_frames(const ViewSource& source, const FrameStudyOptions& options) {
+  const bool sound = options.width >= 8 && options.partners >= 2 && options.tolerance > 0 &&
+                     options.contradicted >= 0;
+  if (!sound) throw Error("frame study", "an option is out of range", "a width of 8 or more");
+  if (source.count > 0 && !source.load) throw Error("frame study", "the source cannot load");
+  std::vector<Small> frames(source.count);
+  for (std::size_t i = 0; i < source.count; ++i) {
+    frames[i] = reduced(source.load(i), options.width, "frame " + std::to_string(i));
+  }
+  std::vector<FrameWord> words(source.count);
+  std::vector<Pair> pairs = plan_pairs(frames, options.partners);
+  std::vector<double> scales(source.count, 1);
+  for (int round = 0; options.scales && round < kRounds; ++round) {
+    hold_against_each_other(frames, scales, kWideTolerance, &pairs);
+    const Eigen::VectorXd logs = evened(
+        source.count, pairs, [](const Pair& p) -> const auto& { return p.depth; });
+    for (std::size_t i = 0; i < scales.size(); ++i) {
+      scales[i] *= std::exp(-logs[static_cast<Eigen::Index>(i)]);
+      words[i].scale = scales[i];
+    }
+  }
+  hold_against_each_other(frames, scales, options.tolerance, &pairs);
+  refuse(pairs, options, &words);
+  if (!options.gains) return words;
+  const auto out = [&](const Pair& p) { return words[p.a].refused || words[p.b].refused; };
+  pairs.erase(std::remove_if(pairs.begin(), pairs.end(), out), pairs.end());
+  for (int c = 0; c < 3; ++c) {
+    const Eigen::VectorXd logs = evened(
+        source.count, pairs, [c](const Pair& p) -> const auto& { return p.color[c]; });
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      words[i].gain[c] = static_cast<float>(std::exp(-logs[static_cast<Eigen::Index>(i)]));
+    }
+  }
+  return words;
+}
+
+ViewSource heeding(const ViewSource& source, const std::vector<FrameWord>& words) {
+  if (words.size() != source.count) {
+    throw Error("frame study", std::to_string(words.size()) + " words",
+                "one for each of " + std::to_string(source.count) + " frames");
+  }
+  return {source.count, [source, words](std::size_t i) {
+            if (words[i].refused) return View();
+            View view = source.load(i);
+            if (view.depth.empty()) return view;
+            view.color = view.color.clone();
+            view.depth = view.depth * words[i].scale;
+            for (cv::Vec3f& c : view.color) {
+              for (int k = 0; k < 3; ++k) c[k] = std::clamp(c[k] * words[i].gain[k], 0.f, 1.f);
+            }
+            return view;
+          }};
+}
+
+}  // namespace ps

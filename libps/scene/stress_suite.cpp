@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/scene/stress_suite.h"
+
+#include <cmath>
+
+#include "libps/eval/cloud_metrics.h"
+#include "libps/eval/image_metrics.h"
+#include "libps/geometry/splat.h"
+
+namespace ps::stress {
+
+SuiteOptions small_suite(std::uint64_t seed) {
+  SuiteOptions options;
+  options.seed = seed;
+  return options;
+}
+
+SuiteOptions full_suite(std::uint64_t seed) {
+  SuiteOptions options;
+  options.seed = seed;
+  options.rooms = 8;
+  options.frames = 24;
+  options.held_out = 6;
+  options.size = {256, 192};
+  options.dense = true;
+  return options;
+}
+
+std::uint64_t room_seed(const SuiteOptions& options, int i) {
+  return 9000 + 100 * options.seed + static_cast<std::uint64_t>(i);
+}
+
+Worlds make_worlds(const SuiteOptions& options) {
+  return std::make_shared<Lazy<std::vector<World>>>([options] {
+    std::vector<World> worlds;
+    for (int i = 0; i < options.rooms; ++i) {
+      worlds.push_back(
+          make_world(room_seed(options, i), options.frames, options.held_out, options.size));
+    }
+    return worlds;
+  });
+}
+
+std::vector<double> values_of(const SuiteOptions& options, std::vector<double> values) {
+  if (!options.dense) return values;
+  std::vector<double> dense = {values[0]};
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    dense.push_back((values[i - 1] + values[i]) / 2);
+    dense.push_back(values[i]);
+  }
+  return dense;
+}
+
+Image picture_of(const Cloud& cloud, const View& truth) {
+  SplatOptions options;
+  options.radius = 2;
+  options.renormalise = true;
+  return splat(cloud, truth.intrinsics, truth.world_from_cam, options).color;
+}
+
+double psnr_of(const Cloud& cloud, const std::vector<View>& views) {
+  double sum = 0;
+  for (const View& view : views) sum += psnr(picture_of(cloud, view), view.color);
+  return cloud.empty() ? std::numeric_limits<double>::quiet_NaN()
+                       : sum / static_cast<double>(views.size());
+}
+
+double f_score_of(const Cloud& cloud, const Cloud& truth) {
+  return 100 * cloud_scores(cloud, truth, {kNearEnough})[0].f_score;
+}
+
+void note(const Cloud& cloud, Outcome* outcome) {
+  outcome->finite = outcome->finite && finite(cloud);
+  outcome->digest = outcome->digest * 31 + digest_of(cloud);
+}
+
+}  // namespace ps::stress

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Internal to the scene room: what the axes share.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "libps/scene/stress_axes.h"
+#include "libps/scene/stress_world.h"
+
+namespace ps::stress {
+
+/// Something that takes a while to make, made when it is first asked for; not for two threads.
+template <typename T>
+class Lazy {
+ public:
+  explicit Lazy(std::function<T()> make) : make_(std::move(make)) {}
+  const T& get() {
+    if (!value_) value_.emplace(make_());
+    return *value_;
+  }
+
+ private:
+  std::function<T()> make_;
+  std::optional<T> value_;
+};
+
+using Worlds = std::shared_ptr<Lazy<std::vector<World>>>;
+/// @return the seed of room i
+std::uint64_t room_seed(const SuiteOptions& options, int i);
+Worlds make_worlds(const SuiteOptions& options);
+
+/// @return the values, with the ones half way between them if the suite is dense
+std::vector<double> values_of(const SuiteOptions& options, std::vector<double> values);
+
+/// @brief A cloud as every method's is shown: radius 2, renormalised.
+Image picture_of(const Cloud& cloud, const View& truth);
+
+/// @return dB, mean over views; holes count as black. NaN for an empty cloud.
+double psnr_of(const Cloud& cloud, const std::vector<View>& views);
+
+/// @return the score in %, of kNearEnough metres
+double f_score_of(const Cloud& cloud, const Cloud& truth);
+constexpr double kNearEnough = .03;
+
+/// Adds a cloud to what is checked of an outcome.
+void note(const Cloud& cloud, Outcome* outcome);
+
+}  // namespace ps::stress
