@@ -220,8 +220,10 @@ ViewSource heeding(const ViewSource& source, const std::vector<FrameWord>& words
             if (words[i].refused) return View();
             View view = source.load(i);
             if (view.depth.empty()) return view;
+            // The source may keep what it gave.
             view.color = view.color.clone();
-            view.depth = view.depth * words[i].scale;
+            view.depth = view.depth.clone();
+            view.depth *= words[i].scale;
             for (cv::Vec3f& c : view.color) {
               for (int k = 0; k < 3; ++k) c[k] = std::clamp(c[k] * words[i].gain[k], 0.f, 1.f);
             }

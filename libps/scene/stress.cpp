@@ -16,6 +16,8 @@
 namespace ps::stress {
 namespace {
 
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
 /// How much worse `to` is than `from`.
 double loss(const Axis& axis, double from, double to) {
   return axis.higher_is_better ? from - to : to - from;
@@ -57,7 +59,8 @@ void check_step(const Axis& axis, const std::string& method, double value, const
     violations->push_back({axis.name, method, value, what});
   };
   if (!one.crashed.empty()) report("an exception that is no ps::Error: " + one.crashed);
-  if (!one.outcome.finite || !cv::checkRange(one.outcome.picture)) report("not finite");
+  if (!one.outcome.finite || (!one.outcome.picture.empty() && !cv::checkRange(one.outcome.picture)))
+    report("not finite");
   const bool same = one.refused == two.refused && one.crashed == two.crashed &&
                     one.outcome.digest == two.outcome.digest &&
                     same_picture(one.outcome.picture, two.outcome.picture);
@@ -137,7 +140,8 @@ AxisResult run_axis(const Axis& axis, int threads, const std::function<void()>& 
       const Attempt two = attempt(axis, method, value, 2), one = attempt(axis, method, value, 1);
       set_threads(threads);
       check_step(axis, method, value, one, two, &result.violations);
-      curve.steps.push_back({value, one.outcome.score, one.outcome.picture, one.refused});
+      curve.steps.push_back({value, one.outcome.score ? one.outcome.score() : kNaN,
+                             one.outcome.picture, one.refused});
       if (progress) progress();
     }
     curve.breaks = breaking_point(axis, curve.scores());

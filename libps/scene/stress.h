@@ -22,11 +22,11 @@ namespace stress {
 
 /// @brief What a method made of a disturbed input.
 struct Outcome {
-  double score = std::numeric_limits<double>::quiet_NaN();
-  Image picture;             ///< for people, and for the checks: it must be finite
-  bool finite = true;        ///< of all else that was made
-  std::uint64_t digest = 0;  ///< of all else that was made
-  std::string overwritten;   ///< how what was observed was changed by what was invented; "" = not
+  std::function<double()> score;  ///< called once, after the checks; NaN = nothing to score
+  Image picture;                  ///< for people, and for the checks: it must be finite
+  bool finite = true;             ///< of all else that was made
+  std::uint64_t digest = 0;       ///< of all else that was made
+  std::string overwritten;  ///< how what was observed was changed by what was invented; "" = not
 };
 
 /// @brief One thing that goes wrong, from not at all to past all use.

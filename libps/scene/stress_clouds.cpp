@@ -123,7 +123,7 @@ class CloudAxes {
         sum += psnr(picture, now.view.color);
         if (outcome.picture.empty()) outcome.picture = picture;
       }
-      outcome.score = sum / static_cast<double>(models->get().size());
+      outcome.score = [score = sum / static_cast<double>(models->get().size())] { return score; };
       return outcome;
     };
     axis.truth = [=](double value) { return disturb(models->get()[0], value).view.color; };

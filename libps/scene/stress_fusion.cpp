@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "libps/eval/statistics.h"
 #include "libps/scene/stress_fusers.h"
 #include "libps/scene/stress_suite.h"
 
@@ -28,15 +29,21 @@ Disturb each(const std::function<View(const View&, double value, const Draw&)>& 
 Outcome fuse_and_score(const std::vector<World>& worlds, const std::string& method, double value,
                        Score score, const Disturb& disturb) {
   Outcome outcome;
-  double sum = 0;
+  auto clouds = std::make_shared<std::vector<Cloud>>();
   for (std::size_t i = 0; i < worlds.size(); ++i) {
-    const World& world = worlds[i];
-    const Cloud cloud = fuse_by(method, disturb(world.frames, value, i));
-    note(cloud, &outcome);
-    sum += score == Score::psnr ? psnr_of(cloud, world.held_out) : f_score_of(cloud, world.truth);
-    if (i == 0) outcome.picture = picture_of(cloud, world.held_out[0]);
+    clouds->push_back(fuse_by(method, disturb(worlds[i].frames, value, i)));
+    note(clouds->back(), &outcome);
   }
-  outcome.score = sum / static_cast<double>(worlds.size());
+  outcome.picture = picture_of(clouds->front(), worlds[0].held_out[0]);
+  outcome.score = [&worlds, clouds, score] {
+    std::vector<double> scores;
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+      const Cloud& cloud = (*clouds)[i];
+      scores.push_back(score == Score::psnr ? psnr_of(cloud, worlds[i].held_out)
+                                            : f_score_of(cloud, worlds[i].truth));
+    }
+    return mean(scores);
+  };
   return outcome;
 }
 

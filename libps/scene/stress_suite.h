@@ -39,7 +39,7 @@ Image picture_of(const Cloud& cloud, const View& truth);
 /// @return dB, mean over views; holes count as black. NaN for an empty cloud.
 double psnr_of(const Cloud& cloud, const std::vector<View>& views);
 
-/// @return the score in %, of kNearEnough metres
+/// @return the F-score in % of kNearEnough metres, of evenly spread points of both clouds
 double f_score_of(const Cloud& cloud, const Cloud& truth);
 constexpr double kNearEnough = .03;
 

@@ -33,9 +33,17 @@ rooms::Camera first_camera(const rooms::Room& room, std::uint64_t seed, cv::Size
   return rooms::random_camera(room, seed, options);
 }
 
+/// What is assigned to an image otherwise lands in the view's own pixels.
+View copy_of(const View& view) {
+  View copy = view;
+  copy.color = view.color.clone();
+  copy.depth = view.depth.clone();
+  return copy;
+}
+
 View scaled(const View& view, double factor) {
-  View result = view;
-  result.depth = view.depth * factor;
+  View result = copy_of(view);
+  result.depth *= factor;
   return result;
 }
 
@@ -81,8 +89,7 @@ double even_at(const Draw& draw, std::uint32_t k) {
 }
 
 View with_noise(const View& view, double share, const Draw& draw) {
-  View result = view;
-  result.depth = view.depth.clone();
+  View result = copy_of(view);
   for (int y = 0; y < result.depth.rows; ++y) {
     for (int x = 0; x < result.depth.cols; ++x) {
       float& d = result.depth(y, x);
@@ -118,14 +125,13 @@ Mask blots(cv::Size size, double share, const Draw& draw) {
 }
 
 View with_holes(const View& view, double share, const Draw& draw) {
-  View result = view;
-  result.depth = view.depth.clone();
+  View result = copy_of(view);
   result.depth.setTo(0, blots(view.depth.size(), share, draw));
   return result;
 }
 
 View with_soft_edges(const View& view, double pixels) {
-  View result = view;
+  View result = copy_of(view);
   const int side = 2 * static_cast<int>(std::lround(pixels / 2)) + 1;
   if (side > 1) cv::blur(view.depth, result.depth, {side, side}, {-1, -1}, cv::BORDER_REPLICATE);
   result.depth.setTo(0, view.depth == 0);
@@ -144,8 +150,8 @@ View with_pose_noise(const View& view, double degrees, const Draw& draw) {
 }
 
 View with_exposure(const View& view, double stops) {
-  View result = view;
-  result.color = view.color * std::exp2(stops / kGamma);
+  View result = copy_of(view);
+  result.color *= std::exp2(stops / kGamma);
   for (cv::Vec3f& c : result.color) {
     for (int k = 0; k < 3; ++k) c[k] = std::min(c[k], 1.f);
   }
@@ -160,8 +166,7 @@ View with_focal(const View& view, double share) {
 }
 
 View with_glass(const View& view, double share, const Draw& draw) {
-  View result = view;
-  result.depth = view.depth.clone();
+  View result = copy_of(view);
   const Mask pane = blots(view.depth.size(), share, draw);
   for (int y = 0; y < pane.rows; ++y) {
     for (int x = 0; x < pane.cols; ++x) {
