@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/default_weights.h"
 
+#include <array>
 #include <system_error>
 
 #include "apps/part.h"
@@ -9,14 +10,26 @@
 namespace fs = std::filesystem;
 
 namespace ps::apps {
+namespace {
 
-fs::path default_weights(const std::string& name) {
-  const fs::path installed = (program_folder() / PS_WEIGHTS / name).lexically_normal();
-  const fs::path source = fs::path(PS_SOURCE_WEIGHTS) / name;
-  for (const fs::path& path : {installed, source}) {
+std::array<fs::path, 2> places_of(const std::string& name) {
+  return {(program_folder() / PS_WEIGHTS / name).lexically_normal(),
+          fs::path(PS_SOURCE_WEIGHTS) / name};
+}
+
+}  // namespace
+
+std::optional<fs::path> find_default_weights(const std::string& name) {
+  for (const fs::path& path : places_of(name)) {
     std::error_code ignored;
     if (fs::exists(path, ignored)) return path;
   }
+  return std::nullopt;
+}
+
+fs::path default_weights(const std::string& name) {
+  if (const auto path = find_default_weights(name)) return *path;
+  const auto [installed, source] = places_of(name);
   throw Error(name, "these weights, which come with the program, are missing",
               installed.string() + " or " + source.string() + ", or --weights FILE");
 }

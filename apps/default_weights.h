@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace ps::apps {
@@ -10,5 +11,8 @@ namespace ps::apps {
 /// tree it was built from. Throws ps::Error that names both places when it is in neither.
 /// @param name  "depth.safetensors"
 std::filesystem::path default_weights(const std::string& name);
+
+/// @return the same, or nothing where it is in neither place
+std::optional<std::filesystem::path> find_default_weights(const std::string& name);
 
 }  // namespace ps::apps

@@ -30,7 +30,7 @@ void SceneArguments::add_view_options(CLI::App& verb) {
       ->check(in_range(0, 1e6));
 }
 
-void SceneArguments::add_outpaint_options(CLI::App& verb) {
+void SceneArguments::add_sampling_options(CLI::App& verb) {
   verb.add_option("--samples", samples,
                   "Completions drawn for each outpainted view, the best is kept: 1 to 1000, or "
                   "auto = until more would not help, 50 at most")
@@ -42,14 +42,18 @@ void SceneArguments::add_outpaint_options(CLI::App& verb) {
                   "Refine only so many completions, the best by a look at the unrefined; 0 = all")
       ->type_name("N")
       ->check(whole_in(0, 1000));
-  verb.add_option("--select", select, "What chooses the best completion")
-      ->type_name("NAME")
-      ->check(CLI::IsMember(selection_names()));
   verb.add_option(
           "--weights", weights,
           "Weights: one file of all networks, or a folder of depth, vqvae, pixelcnn, refine "
           "and classifier.safetensors (default: those that come with the program)")
       ->type_name("FILE|DIR");
+}
+
+void SceneArguments::add_outpaint_options(CLI::App& verb) {
+  add_sampling_options(verb);
+  verb.add_option("--select", select, "What chooses the best completion")
+      ->type_name("NAME")
+      ->check(CLI::IsMember(selection_names()));
 }
 
 namespace {

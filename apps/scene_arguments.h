@@ -41,7 +41,8 @@ struct SceneArguments {
 
   void add_to(CLI::App& verb);
   void add_view_options(CLI::App& verb);      ///< directions, ranges, orbit
-  void add_outpaint_options(CLI::App& verb);  ///< sampling, selection, weights
+  void add_sampling_options(CLI::App& verb);  ///< sampling, weights
+  void add_outpaint_options(CLI::App& verb);  ///< the same, and selection
 
   /// Throw CLI::ValidationError (wrong usage) where a text is none of what is allowed.
   PlanOptions plan() const;

@@ -48,11 +48,11 @@ SceneModels::SceneModels(const std::string& weights, const std::string& selectio
   refiner_ = std::make_unique<models::Refiner>(refine);
   if (wants("discriminator")) {
     discriminator_ = std::make_unique<models::Discriminator>(refine);
-    scorers_.push_back(outpaint::discriminator_scorer(*discriminator_));
+    scorers_["discriminator"] = outpaint::discriminator_scorer(*discriminator_);
   }
   if (wants("classifier")) {
     classifier_ = std::make_unique<models::Classifier>(read("classifier.safetensors"));
-    scorers_.push_back(outpaint::entropy_scorer(*classifier_));
+    scorers_["classifier"] = outpaint::entropy_scorer(*classifier_);
   }
   if (pixel_cnn_->codes() != autoencoder_->codes()) {
     throw Error(file_of(weights, "pixelcnn.safetensors").string(),
@@ -63,9 +63,10 @@ SceneModels::SceneModels(const std::string& weights, const std::string& selectio
 }
 
 SceneNetworks SceneModels::networks() const {
-  return {{autoencoder_.get(), pixel_cnn_.get(), refiner_.get(), scorers_},
-          &depth_->net,
-          depth_->scale};
+  SceneNetworks networks = {
+      {autoencoder_.get(), pixel_cnn_.get(), refiner_.get(), {}}, &depth_->net, depth_->scale};
+  for (const auto& [name, scorer] : scorers_) networks.outpaint.scorers.push_back(scorer);
+  return networks;
 }
 
 }  // namespace ps::apps

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -29,6 +30,8 @@ class SceneModels {
 
   SceneNetworks networks() const;
   const DepthModel& depth() const { return *depth_; }
+  /// By "discriminator" and "classifier", as selected.
+  const std::map<std::string, outpaint::Scorer>& scorers() const { return scorers_; }
   const models::Refiner* refiner() const { return refiner_.get(); }
   const std::vector<std::filesystem::path>& files() const { return files_; }
 
@@ -40,7 +43,7 @@ class SceneModels {
   std::unique_ptr<models::Refiner> refiner_;
   std::unique_ptr<models::Discriminator> discriminator_;
   std::unique_ptr<models::Classifier> classifier_;
-  std::vector<outpaint::Scorer> scorers_;
+  std::map<std::string, outpaint::Scorer> scorers_;
 };
 
 }  // namespace ps::apps

@@ -196,8 +196,11 @@ void write_score_files(const std::string& output, const Json& report, const Scor
   write_json(output, report);
 }
 
-void print_table(const Context& context, const std::string& text) {
-  if (!context.json) print_text(text);
+void end_scores(const Context& context, ScoreRun run, const Stopwatch& total) {
+  add_costs(run.report, total);
+  if (!run.output.empty()) write_score_files(run.output, run.report, run.summary, run.table);
+  if (!context.json) print_text(text_of(run.summary, run.most_columns));
+  end_run(context, run.report, run.output.empty() ? run.input : run.output, run.what);
 }
 
 }  // namespace ps::apps

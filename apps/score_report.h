@@ -45,8 +45,19 @@ void check_score_files(const std::string& output,
 void write_score_files(const std::string& output, const Json& report, const ScoreSummary& summary,
                        const ScoreTable* table = nullptr);
 
-/// @brief Prints text on stdout, unless the report goes there (--json). Throws ps::Error when that
-/// fails.
-void print_table(const Context& context, const std::string& text);
+/// A run that scored.
+struct ScoreRun {
+  std::string output;  ///< FILE.json; empty = nothing is written
+  std::string input;   ///< to be named where there is no output
+  Json report;
+  ScoreSummary summary;
+  const ScoreTable* table = nullptr;  ///< may be null
+  std::string what;                   ///< "depth of 7 frames scored"
+  std::size_t most_columns = 5;       ///< side by side
+};
+
+/// @brief The end of such a run: adds costs to the report, writes the files, prints the table, or
+/// the report (--json), and says what was done. Throws ps::Error when writing or printing fails.
+void end_scores(const Context& context, ScoreRun run, const Stopwatch& total);
 
 }  // namespace ps::apps

@@ -55,15 +55,15 @@ void run_eval_cloud(const EvalCloudArguments& a, const CLI::App& verb, const Con
   options.seed = context.seed;
   const CloudIntervals found = cloud_intervals(cloud, truth, a.thresholds, a.block, options);
   const ScoreSummary summary = summary_of(fs::path(a.cloud).filename().string(), found);
-  Json report = {{"settings", settings_of(verb, context)},
-                 {"points", cloud.size()},
-                 {"true_points", truth.size()},
-                 {"clouds", to_json(summary)}};
-  add_costs(report, total);
-  if (!a.output.empty()) write_score_files(a.output, report, summary);
-  print_table(context, text_of(summary, 3));
-  end_run(context, report, a.output.empty() ? a.cloud : a.output,
-          std::to_string(cloud.size()) + " points scored against " + std::to_string(truth.size()));
+  const Json report = {{"settings", settings_of(verb, context)},
+                       {"points", cloud.size()},
+                       {"true_points", truth.size()},
+                       {"clouds", to_json(summary)}};
+  end_scores(
+      context,
+      {a.output, a.cloud, report, summary, nullptr,
+       std::to_string(cloud.size()) + " points scored against " + std::to_string(truth.size()), 3},
+      total);
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/eval_models.h"
 #include "apps/frames_arguments.h"
 #include "apps/interrupt.h"
 #include "apps/program.h"
@@ -14,12 +14,9 @@
 #include "apps/scene_models.h"
 #include "apps/score_report.h"
 #include "apps/verb_eval.h"
-#include "io/weights_file.h"
 #include "libps/core/error.h"
 #include "libps/eval/consistency.h"
-#include "libps/eval/perceptual.h"
 #include "libps/geometry/point.h"
-#include "libps/models/lpips.h"
 #include "libps/scene/strategies.h"
 
 namespace ps::apps {
@@ -103,12 +100,7 @@ ScoreTable measure(const EvalConsistencyArguments& a, const ChosenFrames& frames
   Progress progress(context, "scenes", frames.chosen.size() * a.methods.size());
   for (std::size_t i = 0; i < frames.chosen.size(); ++i) {
     View input = frames.all.load(frames.chosen[i]);
-    if (a.estimate_depth || input.depth.empty()) {
-      input.depth =
-          photo_depth(models.depth().net, input.color, input.intrinsics, models.depth().scale);
-    } else {
-      fill_holes(input, models.depth());
-    }
+    complete_depth(input, models.depth(), a.estimate_depth);
     for (const std::string& method : a.methods) {
       plan_options.strategy = strategy_of(method);
       const Stopwatch watch;
@@ -130,25 +122,19 @@ void run_eval_consistency(const EvalConsistencyArguments& a, const CLI::App& ver
   note_interrupts();
   const Stopwatch total;
   const SceneModels models(a.scene.weights, a.scene.select, context);
-  std::optional<models::Lpips> lpips;
-  PerceptualDistance perceptual;
-  if (!a.lpips.empty()) {
-    lpips.emplace(read_weights(a.lpips));
-    perceptual = lpips_distance(*lpips);
-  }
+  const PerceptualModel perceptual(a.lpips);
   const ChosenFrames frames = choose_posed_frames(a.frames, context);
-  const ScoreTable table = measure(a, frames, models, perceptual, context);
+  const ScoreTable table = measure(a, frames, models, perceptual.distance(), context);
   BootstrapOptions options;
   options.seed = context.seed;
   const ScoreSummary summary = summary_of(table, options);
-  Json report = {{"settings", settings_of(verb, context)},
-                 {"frames", frames_report(a.frames, frames)},
-                 {"methods", to_json(summary)}};
-  add_costs(report, total);
-  if (!a.output.empty()) write_score_files(a.output, report, summary, &table);
-  print_table(context, text_of(summary));
-  end_run(context, report, a.output.empty() ? a.frames.data : a.output,
-          "consistency of " + std::to_string(frames.chosen.size()) + " scenes scored");
+  const Json report = {{"settings", settings_of(verb, context)},
+                       {"frames", frames_report(a.frames, frames)},
+                       {"methods", to_json(summary)}};
+  end_scores(context,
+             {a.output, a.frames.data, report, summary, &table,
+              "consistency of " + std::to_string(frames.chosen.size()) + " scenes scored"},
+             total);
 }
 
 }  // namespace
@@ -172,8 +158,7 @@ void add_eval_consistency(CLI::App& eval, const Context& context) {
   a->scene.add_view_options(*verb);
   a->scene.add_outpaint_options(*verb);
   verb->add_flag("--estimate-depth", a->estimate_depth, "Look at no true depth of the frames");
-  verb->add_option("--lpips", a->lpips, "Weights of LPIPS, for the perceptual distance")
-      ->type_name("FILE");
+  add_lpips_option(*verb, a->lpips);
   verb->add_option("-o,--output", a->output,
                    "F.json; also writes F.csv, the table, and F.samples.csv, every frame")
       ->type_name("FILE");

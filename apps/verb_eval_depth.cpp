@@ -96,16 +96,15 @@ void run_eval_depth(const EvalDepthArguments& a, const CLI::App& verb, const Con
   BootstrapOptions options;
   options.seed = context.seed;
   const ScoreSummary summary = summary_of(table, options);
-  Json report = {{"settings", settings_of(verb, context)},
-                 {"frames", frames_report(a.frames, frames)},
-                 {"weights", model.weights},
-                 {"methods", to_json(summary)}};
-  add_costs(report, total);
-  if (!a.output.empty()) write_score_files(a.output, report, summary, &table);
-  print_table(context, text_of(summary));
+  const Json report = {{"settings", settings_of(verb, context)},
+                       {"frames", frames_report(a.frames, frames)},
+                       {"weights", model.weights},
+                       {"methods", to_json(summary)}};
   const std::size_t scored = table.rows().size() / table.methods().size();
-  end_run(context, report, a.output.empty() ? a.frames.data : a.output,
-          "depth of " + std::to_string(scored) + " frames scored");
+  end_scores(context,
+             {a.output, a.frames.data, report, summary, &table,
+              "depth of " + std::to_string(scored) + " frames scored"},
+             total);
 }
 
 }  // namespace

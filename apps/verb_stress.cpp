@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/interrupt.h"
+#include "apps/method_models.h"
 #include "apps/output.h"
 #include "apps/program.h"
 #include "apps/progress.h"
@@ -19,24 +20,29 @@ namespace {
 struct StressArguments {
   std::string output;
   std::vector<std::string> axes;
-  std::string size = "small";
+  std::string size = "small", weights;
 };
 
-std::vector<stress::Axis> all_axes(const stress::SuiteOptions& options) {
+std::vector<stress::Axis> all_axes(const stress::SuiteOptions& options,
+                                   const stress::NetworksSource& networks) {
   std::vector<stress::Axis> axes = stress::fusion_axes(options);
   for (stress::Axis& axis : stress::cloud_axes(options)) axes.push_back(std::move(axis));
+  for (stress::Axis& axis : stress::photo_axes(options, networks)) axes.push_back(std::move(axis));
   return axes;
 }
 
 std::vector<std::string> axis_names() {
   std::vector<std::string> names;
-  for (const stress::Axis& axis : all_axes({})) names.push_back(axis.name);
+  for (const stress::Axis& axis : all_axes({}, {})) names.push_back(axis.name);
   return names;
 }
 
-std::vector<stress::Axis> chosen_axes(const StressArguments& a, const Context& context) {
-  std::vector<stress::Axis> axes = all_axes(a.size == "full" ? stress::full_suite(context.seed)
-                                                             : stress::small_suite(context.seed));
+std::vector<stress::Axis> chosen_axes(const StressArguments& a,
+                                      const stress::NetworksSource& networks,
+                                      const Context& context) {
+  std::vector<stress::Axis> axes = all_axes(
+      a.size == "full" ? stress::full_suite(context.seed) : stress::small_suite(context.seed),
+      networks);
   const auto unwanted = [&](const stress::Axis& axis) {
     return !a.axes.empty() && std::find(a.axes.begin(), a.axes.end(), axis.name) == a.axes.end();
   };
@@ -62,7 +68,12 @@ void run_stress(const StressArguments& a, const CLI::App& verb, const Context& c
   note_interrupts();
   const Stopwatch total;
   OutputFolder out(a.output);
-  const std::vector<StressRow> rows = run_axes(chosen_axes(a, context), out, context);
+  std::unique_ptr<MethodModels> models;
+  const auto networks = [&] {
+    models = std::make_unique<MethodModels>(a.weights, std::vector<std::string>{"ours"}, context);
+    return models->networks();
+  };
+  const std::vector<StressRow> rows = run_axes(chosen_axes(a, networks, context), out, context);
   Json report = {{"settings", settings_of(verb, context)}, {"axes", to_json(rows)}};
   add_costs(report, total);
   out.write("stress.json", [&](const auto& path) { write_json(path, report); });
@@ -100,6 +111,9 @@ void add_stress(CLI::App& program, const Context& context) {
   verb->add_option("--size", a->size, "small = minutes, full = a night")
       ->type_name("SIZE")
       ->check(CLI::IsMember({"small", "full"}));
+  verb->add_option("--weights", a->weights,
+                   "Folder of weights; empty = what comes with the program")
+      ->type_name("DIR");
   verb->callback([a, verb, &context] { run_stress(*a, *verb, context); });
 }
 

@@ -44,6 +44,19 @@ Image resampled(const Image& picture, const Intrinsics& seen, const Intrinsics& 
   return cv::min(cv::max(out, cv::Scalar::all(0)), cv::Scalar::all(1));
 }
 
+View enlarged(const View& view) {
+  const Intrinsics wanted = network_lens(view.intrinsics);
+  const double scale = wanted.fx / view.intrinsics.fx;
+  if (scale <= 1) return view;
+  View large = view;
+  const cv::Size size(static_cast<int>(std::lround(view.color.cols * scale)),
+                      static_cast<int>(std::lround(view.color.rows * scale)));
+  large.intrinsics = resized(view.intrinsics, size.width, size.height);
+  cv::resize(view.color, large.color, size, 0, 0, cv::INTER_LINEAR);
+  cv::resize(view.depth, large.depth, size, 0, 0, cv::INTER_NEAREST_EXACT);
+  return large;
+}
+
 nn::Tensor to_network(const Image& image) {
   nn::Tensor tensor({1, image.rows, image.cols, 3});
   cv::Mat pixels(image.rows, image.cols, CV_32FC3, tensor.data());

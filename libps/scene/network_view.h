@@ -2,7 +2,7 @@
 #pragma once
 
 #include "libps/core/image.h"
-#include "libps/geometry/camera.h"
+#include "libps/geometry/view.h"
 #include "libps/nn/tensor.h"
 
 namespace ps {
@@ -15,6 +15,11 @@ Intrinsics network_lens(const Intrinsics& lens);
 /// @brief A picture of the networks' camera, resampled (bicubic) to the camera it was made of.
 /// @param seen  network_lens() of a lens of the same view and aspect as `lens`
 Image resampled(const Image& picture, const Intrinsics& seen, const Intrinsics& lens);
+
+/// @return the view, enlarged if its short side is below 256 pixels, so that its splats leave no
+/// holes in the networks' view; depth by the nearest pixel, so that none is invented between two
+/// surfaces
+View enlarged(const View& view);
 
 /// @return [1, h, w, 3] in [-1,1] of an image in [0,1]
 nn::Tensor to_network(const Image& image);

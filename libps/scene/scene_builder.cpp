@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "libps/core/error.h"
@@ -19,21 +18,6 @@ constexpr float kCoverRadius = 1.5f;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// Enlarged to at least the networks' size; depth by the nearest pixel, so that none is invented
-/// between two surfaces.
-View enlarged(const View& view) {
-  const Intrinsics wanted = network_lens(view.intrinsics);
-  const double scale = wanted.fx / view.intrinsics.fx;
-  if (scale <= 1) return view;
-  View large = view;
-  const cv::Size size(static_cast<int>(std::lround(view.color.cols * scale)),
-                      static_cast<int>(std::lround(view.color.rows * scale)));
-  large.intrinsics = resized(view.intrinsics, size.width, size.height);
-  cv::resize(view.color, large.color, size, 0, 0, cv::INTER_LINEAR);
-  cv::resize(view.depth, large.depth, size, 0, 0, cv::INTER_NEAREST_EXACT);
-  return large;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "libps/scene/stress.h"
+#include "libps/scene/view_methods.h"
 
 namespace ps::stress {
 
@@ -16,6 +17,8 @@ struct SuiteOptions {
   int frames = 12;             ///< of each, to be fused
   int held_out = 3;            ///< of each, to be rendered
   cv::Size size = {160, 120};  ///< of frames, pixels
+  int photos = 2;              ///< of as many rooms, to be looked around in
+  int samples = 1;             ///< completions of each view
   bool dense = false;          ///< values between the others as well
 };
 
@@ -28,5 +31,12 @@ std::vector<Axis> fusion_axes(const SuiteOptions& options);
 
 /// @brief Axes of rendering a fused cloud: density, splat radius, coincident points, image size.
 std::vector<Axis> cloud_axes(const SuiteOptions& options);
+
+/// Makes the networks of all methods, which must outlive the axes, when a method first needs them.
+using NetworksSource = std::function<MethodNetworks()>;
+
+/// @brief Axes of looking around in one photo: how far the camera goes, and what is wrong with the
+/// photo's depth, lens and size. Ours is view_methods.h's, and so are the others.
+std::vector<Axis> photo_axes(const SuiteOptions& options, const NetworksSource& networks);
 
 }  // namespace ps::stress

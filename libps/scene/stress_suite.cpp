@@ -38,6 +38,8 @@ SuiteOptions full_suite(std::uint64_t seed) {
   options.rooms = 8;
   options.frames = 24;
   options.held_out = 6;
+  options.photos = 8;
+  options.samples = 8;
   options.size = {256, 192};
   options.dense = true;
   return options;

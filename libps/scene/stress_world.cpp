@@ -165,6 +165,17 @@ View with_focal(const View& view, double share) {
   return result;
 }
 
+View shrunk(const View& view, double times) {
+  const auto side = [&](int pixels) { return std::max(2, static_cast<int>(pixels / times)); };
+  View result;
+  result.world_from_cam = view.world_from_cam;
+  result.intrinsics = resized(view.intrinsics, side(view.color.cols), side(view.color.rows));
+  const cv::Size size(result.intrinsics.width, result.intrinsics.height);
+  cv::resize(view.color, result.color, size, 0, 0, cv::INTER_AREA);
+  cv::resize(view.depth, result.depth, size, 0, 0, cv::INTER_NEAREST_EXACT);
+  return result;
+}
+
 View with_glass(const View& view, double share, const Draw& draw) {
   View result = copy_of(view);
   const Mask pane = blots(view.depth.size(), share, draw);

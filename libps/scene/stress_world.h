@@ -60,6 +60,9 @@ View with_focal(const View& view, double share);
 /// depth of something else up to three times as far.
 View with_glass(const View& view, double share, const Draw& draw);
 
+/// So many times narrower, at least 2 pixels wide.
+View shrunk(const View& view, double times);
+
 /// @return a pixel's normal numbers: a function of (draw, x, y)
 double normal_at(const Draw& draw, int x, int y);
 /// @return even in [0, 1): a function of (draw, k)

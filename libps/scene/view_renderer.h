@@ -28,8 +28,14 @@ struct ViewRendererOptions {
 struct RenderedView {
   Image color;               ///< [0,1], of the lens's size
   Splat splat;               ///< of the cloud into this lens, with detail_radius
+  Mask shown;                ///< 1 where the cloud itself is shown, its closed gaps included
   double missing_share = 0;  ///< of its pixels: what the refiner alone had to fill in
 };
+
+/// @brief What of a view the cloud itself shows, as ViewRenderer does: `color` is meant only where
+/// `shown` is. Throws ps::Error when lens or pose are unsound.
+RenderedView cloud_picture(const pcl::PointCloud<Point>& cloud, const Intrinsics& lens,
+                           const Pose& world_from_cam, const ViewRendererOptions& options = {});
 
 /// @brief Any view of a scene's cloud: splat and refinement (SPEC.md 1).
 ///

@@ -12,25 +12,11 @@
 #include "libps/scene/camera_path.h"
 #include "libps/scene/view_renderer.h"
 #include "tests/support/box_world.h"
-#include "tests/support/random_weights.h"
+#include "tests/support/random_networks.h"
 #include "tests/support/same_points.h"
 
 namespace ps {
 namespace {
-
-/// Narrow networks by chance: what they paint is noise, but where it goes is not.
-struct Networks {
-  models::Autoencoder autoencoder{models::random_autoencoder(16, 8, 8, 24)};
-  models::PixelCnn pixel_cnn{models::random_pixel_cnn(11, 24)};
-  models::Refiner refiner{models::random_refiner(8)};
-  models::DepthNet depth{models::random_depth_net(4)};
-
-  SceneNetworks all() const { return {{&autoencoder, &pixel_cnn, &refiner, {}}, &depth, {}}; }
-};
-const Networks& networks() {
-  static const Networks kNetworks;
-  return kNetworks;
-}
 
 SceneOptions few_samples() {
   SceneOptions options;
@@ -47,7 +33,7 @@ Pose turned(const Pose& start, double radians) {
 }
 
 SceneBuilder observed_scene(const SceneOptions& options = few_samples()) {
-  SceneBuilder scene(networks().all(), kLens, options);
+  SceneBuilder scene(random_networks().all(), kLens, options);
   scene.observe(input_view(), 0);
   return scene;
 }
@@ -143,7 +129,7 @@ TEST(SceneBuilder, stops_when_told_to_and_the_cloud_stays) {
 
 TEST(SceneBuilder, a_tiny_photo_leaves_no_holes_in_its_own_view) {
   const Intrinsics tiny = intrinsics_from_fov(16, 16, 60);
-  SceneBuilder scene(networks().all(), tiny, few_samples());
+  SceneBuilder scene(random_networks().all(), tiny, few_samples());
   const View view = box_world_view(tiny, pose_at(0, 0, -1, 0.1));
   scene.observe(view, 0);
   EXPECT_EQ(scene.outpaint(view.world_from_cam, 1).report.missing_share, 0);
@@ -165,7 +151,7 @@ TEST(ViewRenderer, what_is_known_is_shown_as_it_is) {
   SceneBuilder scene = observed_scene();
   const View input = input_view();
   const RenderedView view =
-      ViewRenderer(&networks().refiner).render(scene.cloud(), kLens, input.world_from_cam);
+      ViewRenderer(&random_networks().refiner).render(scene.cloud(), kLens, input.world_from_cam);
   EXPECT_LT(view.missing_share, 0.001);
   EXPECT_GT(psnr(view.color, input.color, view.splat.hit), 40) << "it is the photo";
   EXPECT_GT(psnr(view.color, input.color), 32) << "with the edges, whose pixels are not lifted";
@@ -177,9 +163,10 @@ TEST(ViewRenderer, the_network_paints_only_what_is_missing) {
   const Image truth = box_world_view(kLens, pose).color;
   ViewRendererOptions bare;
   bare.as_published = true;
-  const RenderedView view = ViewRenderer(&networks().refiner).render(scene.cloud(), kLens, pose);
+  const RenderedView view =
+      ViewRenderer(&random_networks().refiner).render(scene.cloud(), kLens, pose);
   const RenderedView published =
-      ViewRenderer(&networks().refiner, bare).render(scene.cloud(), kLens, pose);
+      ViewRenderer(&random_networks().refiner, bare).render(scene.cloud(), kLens, pose);
   EXPECT_GT(view.missing_share, 0.1);
   EXPECT_LT(view.missing_share, 0.7);
   EXPECT_GT(psnr(view.color, truth, view.splat.hit), 25);
@@ -192,7 +179,8 @@ TEST(ViewRenderer, a_surface_that_comes_near_has_no_gaps) {
   SceneBuilder scene = observed_scene();
   Pose pose = input_view().world_from_cam;
   pose.translation() += pose.linear().col(2) * 1.2;  // a step towards what is ahead
-  const RenderedView view = ViewRenderer(&networks().refiner).render(scene.cloud(), kLens, pose);
+  const RenderedView view =
+      ViewRenderer(&random_networks().refiner).render(scene.cloud(), kLens, pose);
   const cv::Rect middle(60, 50, kLens.width - 120, kLens.height - 100);
   const Image truth = box_world_view(kLens, pose).color;
   EXPECT_GT(psnr(view.color(middle), truth(middle)), 25);

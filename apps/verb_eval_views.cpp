@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/contact_sheet.h"
+#include "apps/eval_models.h"
+#include "apps/frames_arguments.h"
+#include "apps/interrupt.h"
+#include "apps/method_models.h"
+#include "apps/output.h"
+#include "apps/program.h"
+#include "apps/progress.h"
+#include "apps/scene_arguments.h"
+#include "apps/score_report.h"
+#include "apps/verb_eval.h"
+#include "io/photo.h"
+#include "libps/core/error.h"
+#include "libps/eval/frechet.h"
+#include "libps/eval/view_scores.h"
+
+namespace ps::apps {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+struct EvalViewsArguments {
+  FramesArguments frames;
+  SceneArguments scene;  ///< sampling and weights of it are used
+  std::vector<std::string> methods = default_methods();
+  std::size_t pairs = 24;
+  PairRange range;
+  bool wide = false, estimate_depth = false;
+  std::string lpips, output, pictures;
+};
+
+std::vector<ScoreColumn> columns() {
+  return {{"PSNR", "dB", true}, {"PSNR visible", "dB", true}, {"PSNR invisible", "dB", true},
+          {"SSIM", "", true},   {"LPIPS-squeeze", "", false}, {"seconds", "s", false}};
+}
+
+std::vector<FramePair> pairs_of(const EvalViewsArguments& a, const ChosenFrames& frames,
+                                const Context& context) {
+  std::vector<Pose> poses;
+  std::vector<int> worlds;
+  for (const std::size_t i : frames.chosen) {
+    poses.push_back(frames.all.frames[i].world_from_cam);
+    worlds.push_back(frames.all.frames[i].world);
+  }
+  const PairRange range = a.wide ? kWidePairs : a.range;
+  std::vector<FramePair> pairs = choose_pairs(poses, worlds, range, a.pairs, context.seed);
+  if (!pairs.empty()) return pairs;
+  char asked[100];
+  std::snprintf(asked, sizeof asked, "%g to %g degrees and at most %g m apart",
+                range.least_rotation, range.most_rotation, range.most_distance);
+  throw Error(a.frames.data, std::string("no two of its frames are ") + asked,
+              "a wider range, or more frames");
+}
+
+/// What is seen of a pair, by method.
+struct PairPictures {
+  Image input, truth;
+  std::vector<SheetTile> shown;  ///< in the order of the methods
+
+  PairPictures(const View& source, const View& target) : input(source.color), truth(target.color) {}
+};
+
+/// Each method's pictures in a folder of its own, as `eval ab` takes them, and for each pair a
+/// sheet of all.
+void write_pictures(OutputFolder& folder, std::size_t number, const PairPictures& pair) {
+  constexpr int kColumns = 4;
+  char name[32];
+  std::snprintf(name, sizeof name, "pair_%05zu.png", number);
+  std::vector<SheetTile> tiles = {{"input", pair.input}, {"truth", pair.truth}};
+  tiles.insert(tiles.end(), pair.shown.begin(), pair.shown.end());
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    tiles[i].row = static_cast<int>(i) / kColumns;
+    tiles[i].column = static_cast<int>(i) % kColumns;
+    folder.write(tiles[i].name + "/" + name,
+                 [&](const std::filesystem::path& file) { write_image(file, tiles[i].image); });
+  }
+  folder.write(name,
+               [&](const std::filesystem::path& file) { write_image(file, contact_sheet(tiles)); });
+}
+
+/// Scores all methods on one pair after another.
+class ViewsRun {
+ public:
+  ViewsRun(const EvalViewsArguments& arguments, const ChosenFrames& frames,
+           const MethodModels& models, const PerceptualModel& perceptual, const Context& context)
+      : a_(arguments),
+        frames_(frames),
+        models_(models),
+        perceptual_(perceptual.distance()),
+        table_(columns()) {
+    if (const auto features = perceptual.features()) frechet_.emplace(*features);
+    ViewMethodOptions options;
+    options.scene = a_.scene.scene(context);
+    options.scene.outpaint.progress = [](double) {
+      throw_if_interrupted();
+      return true;
+    };
+    options.renderer.seed = context.seed;
+    for (const std::string& name : a_.methods) {
+      methods_.push_back(make_view_method(name, models.networks(), options));
+    }
+  }
+
+  void measure(const std::vector<FramePair>& pairs, OutputFolder* folder, const Context& context) {
+    Progress progress(context, "views", pairs.size() * methods_.size());
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const PairPictures pictures = measure(pairs[i], progress);
+      if (folder != nullptr) write_pictures(*folder, i, pictures);
+    }
+  }
+
+  const ScoreTable& table() const { return table_; }
+  const Json& pairs() const { return pairs_; }
+
+  ScoreSummary summary(const Context& context) const {
+    BootstrapOptions options;
+    options.seed = context.seed;
+    ScoreSummary summary = summary_of(table_, options);
+    if (!frechet_) return summary;
+    // Without an interval: resamples repeat pictures, which narrows what is fitted to them.
+    summary.columns.push_back({frechet_name(frechet_->network()), "", false});
+    for (std::size_t r = 0; r < summary.rows.size(); ++r) {
+      const std::string& method = summary.rows[r];
+      summary.cells[r].push_back({frechet_->distance(method), kNaN, kNaN, frechet_->count(method)});
+    }
+    return summary;
+  }
+
+ private:
+  PairPictures measure(const FramePair& pair, Progress& progress) {
+    const std::size_t source = frames_.chosen[pair.source], target = frames_.chosen[pair.target];
+    View input = frames_.all.load(source);
+    const View truth = frames_.all.load(target);
+    // By true depth, where there is one.
+    const bool measured = !input.depth.empty();
+    Visibility visibility;
+    if (measured) visibility = true_visibility(input, truth);
+    complete_depth(input, models_.depth(), a_.estimate_depth);
+    if (!measured) visibility = true_visibility(input, truth);
+    const std::string name =
+        frames_.all.frames[source].name + " to " + frames_.all.frames[target].name;
+    pairs_.push_back({{"pair", name},
+                      {"rotation", pair.rotation},
+                      {"distance", pair.distance},
+                      {"visible_share", cv::mean(visibility.visible)[0]},
+                      {"invisible_share", cv::mean(visibility.invisible)[0]}});
+    PairPictures pictures(input, truth);
+    if (frechet_) frechet_->add_truth(truth.color);
+    for (std::size_t m = 0; m < methods_.size(); ++m) {
+      const Stopwatch watch;
+      const Image shown = methods_[m]->show(input, truth.intrinsics, truth.world_from_cam).color;
+      const double seconds = watch.seconds();
+      const ViewScores s = view_scores(shown, truth.color, visibility, perceptual_);
+      table_.add({a_.methods[m],
+                  name,
+                  frames_.groups[pair.source],
+                  {s.psnr, s.psnr_visible, s.psnr_invisible, s.ssim, s.perceptual, seconds}});
+      if (frechet_) frechet_->add(a_.methods[m], shown);
+      pictures.shown.push_back({a_.methods[m], shown});
+      progress.update(table_.rows().size());
+    }
+    return pictures;
+  }
+
+  const EvalViewsArguments& a_;
+  const ChosenFrames& frames_;
+  const MethodModels& models_;
+  PerceptualDistance perceptual_;
+  std::optional<FrechetScores> frechet_;
+  std::vector<std::unique_ptr<ViewMethod>> methods_;
+  ScoreTable table_;
+  Json pairs_ = Json::array();
+};
+
+void run_eval_views(const EvalViewsArguments& a, const CLI::App& verb, const Context& context) {
+  check_score_files(a.output);
+  note_interrupts();
+  const Stopwatch total;
+  std::optional<OutputFolder> folder;
+  if (!a.pictures.empty()) folder.emplace(a.pictures);
+  const ChosenFrames frames = choose_posed_frames(a.frames, context);
+  const std::vector<FramePair> pairs = pairs_of(a, frames, context);
+  const MethodModels models(a.scene.weights, a.methods, context);
+  const PerceptualModel perceptual(a.lpips);
+  ViewsRun run(a, frames, models, perceptual, context);
+  run.measure(pairs, folder ? &*folder : nullptr, context);
+  const ScoreSummary summary = run.summary(context);
+  const Json report = {{"settings", settings_of(verb, context)},
+                       {"frames", frames_report(a.frames, frames)},
+                       {"pairs", run.pairs()},
+                       {"methods", to_json(summary)}};
+  if (folder) folder->commit();
+  end_scores(context,
+             {a.output, a.frames.data, report, summary, &run.table(),
+              "views of " + std::to_string(pairs.size()) + " pairs scored"},
+             total);
+}
+
+void add_pair_options(CLI::App& verb, EvalViewsArguments& a) {
+  verb.add_option("--pairs", a.pairs, "At most so many pairs, drawn by the seed")
+      ->type_name("N")
+      ->check(whole_in(1, 1000000));
+  auto* wide = verb.add_flag("--wide", a.wide, "Pairs of 0 to 120 degrees");
+  verb.add_option("--min-rotation", a.range.least_rotation, "Degrees between the views, at least")
+      ->type_name("DEG")
+      ->check(in_range(0, 180))
+      ->excludes(wide);
+  verb.add_option("--max-rotation", a.range.most_rotation, "... at most")
+      ->type_name("DEG")
+      ->check(in_range(0, 180))
+      ->excludes(wide);
+  verb.add_option("--max-distance", a.range.most_distance, "Metres between the cameras, at most")
+      ->type_name("M")
+      ->check(in_range(0, kNoBound))
+      ->excludes(wide);
+}
+
+}  // namespace
+
+void add_eval_views(CLI::App& eval, const Context& context) {
+  auto* verb = eval.add_subcommand(
+      "views",
+      "How near views come to true ones: of pairs of frames one is the input, and what each method "
+      "shows from where the other stands is held against it. PSNR is over all pixels, those whose "
+      "surface the input sees by true depth, and those that it does not. With --lpips also LPIPS, "
+      "and a Frechet distance on features that the table names: it is no FID.\n"
+      "Methods: ours; one-completion (of ours); by-classifier, by-discriminator, by-likelihood "
+      "(the best of all in the eyes of one); sequential, independent; no-outpainter (the refiner "
+      "fills in); rgb (colours as codes); mean-colour, telea, navier-stokes, nearest (plain fills "
+      "of what the cloud shows); copy (the input itself).\n"
+      "Below each mean its 95 % bootstrap interval over rooms, or over twentieths of a walk.");
+  auto a = std::make_shared<EvalViewsArguments>();
+  a->frames.add_to(*verb);
+  verb->add_option("--methods", a->methods, "Which of them")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAME,...")
+      ->check(CLI::IsMember(view_method_names()));
+  add_pair_options(*verb, *a);
+  a->scene.add_sampling_options(*verb);
+  verb->add_flag("--estimate-depth", a->estimate_depth, "Show the methods no true depth");
+  add_lpips_option(*verb, a->lpips);
+  verb->add_option("-o,--output", a->output,
+                   "F.json; also writes F.csv, the table, and F.samples.csv, every pair")
+      ->type_name("FILE");
+  verb->add_option("--pictures", a->pictures,
+                   "Folder for a sheet of each pair, and each method's pictures in a folder of "
+                   "its own, as eval ab takes them")
+      ->type_name("DIR");
+  verb->callback([a, verb, &context] { run_eval_views(*a, *verb, context); });
+}
+
+}  // namespace ps::apps
