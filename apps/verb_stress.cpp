@@ -9,7 +9,6 @@
 #include "apps/output.h"
 #include "apps/program.h"
 #include "apps/progress.h"
-#include "apps/score_report.h"
 #include "apps/stress_report.h"
 #include "libps/core/error.h"
 #include "libps/scene/stress_axes.h"
@@ -80,7 +79,7 @@ void run_stress(const StressArguments& a, const CLI::App& verb, const Context& c
   out.write("stress.csv", [&](const auto& path) { write_text(path, to_csv(rows)); });
   out.write("stress.md", [&](const auto& path) { write_text(path, stress_markdown(rows)); });
   out.commit();
-  print_table(context, breaking_table(rows));
+  if (!context.json) print_text(breaking_table(rows));
   std::size_t violations = 0;
   for (const StressRow& row : rows) violations += row.result.violations.size();
   end_run(context, report, a.output, std::to_string(rows.size()) + " axes put under stress");
