@@ -20,7 +20,9 @@ constexpr std::size_t kLeastOverlap = 40;            ///< pixels; less is no pai
 constexpr float kDarkest = .04f, kBrightest = .97f;  ///< beyond, sensors clip
 constexpr double kWideTolerance = 0.25;              ///< share; scales may be this far apart
 constexpr int kRounds = 4;                           ///< of evening out scales
-constexpr double kAnchor = 1e-3;                     ///< of unknowns to 0, in pairs
+constexpr double kTolerancePerSpread = 2;            ///< of fusing, and at most:
+constexpr double kMostTolerance = .15;
+constexpr double kAnchor = 1e-3;  ///< of unknowns to 0, in pairs
 
 /// A frame, reduced, and the least and greatest depth around each of its pixels.
 struct Small {
@@ -173,9 +175,30 @@ void refuse(const std::vector<Pair>& pairs, const FrameStudyOptions& options,
   for (FrameWord& word : *words) word.refused = options.refuse && word.contradicted > most;
 }
 
+void even_colors(const std::vector<Pair>& pairs, std::vector<FrameWord>* words) {
+  for (int c = 0; c < 3; ++c) {
+    const Eigen::VectorXd logs = evened(
+        words->size(), pairs, [c](const Pair& p) -> const auto& { return p.color[c]; });
+    for (std::size_t i = 0; i < words->size(); ++i) {
+      (*words)[i].gain[c] = static_cast<float>(std::exp(-logs[static_cast<Eigen::Index>(i)]));
+    }
+  }
+}
+
+double spread_of(const std::vector<Pair>& pairs) {
+  std::vector<double> spreads;
+  for (const Pair& pair : pairs) {
+    if (pair.depth.size() < kLeastOverlap) continue;
+    std::vector<double> ratios = pair.depth;
+    for (double& ratio : ratios) ratio = std::abs(ratio);
+    spreads.push_back(median(std::move(ratios)));
+  }
+  return spreads.empty() ? 0 : median(std::move(spreads));
+}
+
 }  // namespace
 
-std::vector<FrameWord> study_frames(const ViewSource& source, const FrameStudyOptions& options) {
+FrameStudy study_frames(const ViewSource& source, const FrameStudyOptions& options) {
   const bool sound = options.width >= 8 && options.partners >= 2 && options.tolerance > 0 &&
                      options.contradicted >= 0;
   if (!sound) throw Error("frame study", "an option is out of range", "a width of 8 or more");
@@ -184,7 +207,9 @@ std::vector<FrameWord> study_frames(const ViewSource& source, const FrameStudyOp
   for (std::size_t i = 0; i < source.count; ++i) {
     frames[i] = reduced(source.load(i), options.width, "frame " + std::to_string(i));
   }
-  std::vector<FrameWord> words(source.count);
+  FrameStudy study;
+  std::vector<FrameWord>& words = study.words;
+  words.resize(source.count);
   std::vector<Pair> pairs = plan_pairs(frames, options.partners);
   std::vector<double> scales(source.count, 1);
   for (int round = 0; options.scales && round < kRounds; ++round) {
@@ -198,20 +223,16 @@ std::vector<FrameWord> study_frames(const ViewSource& source, const FrameStudyOp
   }
   hold_against_each_other(frames, scales, options.tolerance, &pairs);
   refuse(pairs, options, &words);
-  if (!options.gains) return words;
   const auto out = [&](const Pair& p) { return words[p.a].refused || words[p.b].refused; };
   pairs.erase(std::remove_if(pairs.begin(), pairs.end(), out), pairs.end());
-  for (int c = 0; c < 3; ++c) {
-    const Eigen::VectorXd logs = evened(
-        source.count, pairs, [c](const Pair& p) -> const auto& { return p.color[c]; });
-    for (std::size_t i = 0; i < words.size(); ++i) {
-      words[i].gain[c] = static_cast<float>(std::exp(-logs[static_cast<Eigen::Index>(i)]));
-    }
-  }
-  return words;
+  if (options.gains) even_colors(pairs, &words);
+  hold_against_each_other(frames, scales, kWideTolerance, &pairs);
+  study.spread = spread_of(pairs);
+  return study;
 }
 
-ViewSource heeding(const ViewSource& source, const std::vector<FrameWord>& words) {
+ViewSource heeding(const ViewSource& source, const FrameStudy& study) {
+  const std::vector<FrameWord>& words = study.words;
   if (words.size() != source.count) {
     throw Error("frame study", std::to_string(words.size()) + " words",
                 "one for each of " + std::to_string(source.count) + " frames");
@@ -229,6 +250,13 @@ ViewSource heeding(const ViewSource& source, const std::vector<FrameWord>& words
             }
             return view;
           }};
+}
+
+FuseOptions heeding(const FuseOptions& options, const FrameStudy& study) {
+  FuseOptions heeded = options;
+  double& tolerance = heeded.cloud.tolerance_relative;
+  tolerance = std::max(tolerance, std::min(kMostTolerance, kTolerancePerSpread * study.spread));
+  return heeded;
 }
 
 }  // namespace ps

@@ -29,19 +29,28 @@ struct FrameWord {
   bool refused = false;
 };
 
+struct FrameStudy {
+  std::vector<FrameWord> words;  ///< one for each frame; empty frames have no word
+  /// The middle |log ratio| of two frames' depths of one surface, whatever it comes from: noise,
+  /// poses, lenses. 0 where no two frames see the same.
+  double spread = 0;
+};
+
 /// @brief Holds posed RGB-D frames against each other before they are fused: each is reduced, its
 /// pixels are lifted and projected into other frames, near ones in the source's order and others
 /// evenly spread. Gains (one for each channel) and scales are the least squares of all pairs'
 /// median log ratios, and average to 1 in the logarithm: as photo stitchers even exposures out
 /// (Brown and Lowe, IJCV 2007, section 6), by ratios where those have differences.
 /// @param source  read once, in order
-/// @return one for each frame; empty frames have no word
 /// Throws ps::Error when an option is unsound or a frame is; errors of load() are passed on.
-std::vector<FrameWord> study_frames(const ViewSource& source,
-                                    const FrameStudyOptions& options = {});
+FrameStudy study_frames(const ViewSource& source, const FrameStudyOptions& options = {});
 
 /// @return the source with the words heeded: gains and scales applied, empty views for refused
 /// frames. Throws ps::Error when there are more or fewer words than frames.
-ViewSource heeding(const ViewSource& source, const std::vector<FrameWord>& words);
+ViewSource heeding(const ViewSource& source, const FrameStudy& study);
+
+/// @return the options with a tolerance that takes two frames' depths of one surface for one: as it
+/// is for good frames, more where they spread
+FuseOptions heeding(const FuseOptions& options, const FrameStudy& study);
 
 }  // namespace ps

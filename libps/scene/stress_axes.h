@@ -13,13 +13,13 @@ namespace ps::stress {
 /// How much is put under stress.
 struct SuiteOptions {
   std::uint64_t seed = 0;
-  int rooms = 2;               ///< procedural rooms that scores are means of
-  int frames = 12;             ///< of each, to be fused
-  int held_out = 3;            ///< of each, to be rendered
-  cv::Size size = {160, 120};  ///< of frames, pixels
-  int photos = 2;              ///< of as many rooms, to be looked around in
-  int samples = 1;             ///< completions of each view
-  bool dense = false;          ///< values between the others as well
+  int rooms = 2;              ///< procedural rooms that scores are means of
+  int frames = 10;            ///< of each, to be fused
+  int held_out = 3;           ///< of each, to be rendered
+  cv::Size size = {128, 96};  ///< of frames, pixels
+  int photos = 2;             ///< of as many rooms, to be looked around in
+  int samples = 1;            ///< completions of each view
+  bool dense = false;         ///< values between the others as well
 };
 
 SuiteOptions small_suite(std::uint64_t seed);

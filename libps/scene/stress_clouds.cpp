@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <map>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "libps/core/error.h"
@@ -23,6 +24,7 @@ struct Model {
   Cloud cloud;
   rooms::Room room;
   View view;
+  Mask covered;  ///< of the view
 };
 using Models = std::shared_ptr<Lazy<std::vector<Model>>>;
 
@@ -95,8 +97,8 @@ class CloudAxes {
       for (int i = 0; i < options.rooms; ++i) {
         const std::uint64_t seed = room_seed(options, i);
         const World world = make_world(seed, options.frames, 1, options.size);
-        models.push_back(
-            {fuse_by(kOursUnguarded, world.frames), rooms::Room(seed), world.held_out[0]});
+        models.push_back({fuse_by(kOursUnguarded, world.frames), rooms::Room(seed),
+                          world.held_out[0], world.covered[0]});
       }
       return models;
     });
@@ -120,7 +122,9 @@ class CloudAxes {
       for (const Model& model : models->get()) {
         const Case now = disturb(model, value);
         const Image picture = draw(method, now.cloud, now.view, now.radius);
-        sum += psnr(picture, now.view.color);
+        Mask covered;
+        cv::resize(model.covered, covered, picture.size(), 0, 0, cv::INTER_NEAREST);
+        sum += psnr(picture, now.view.color, covered);
         if (outcome.picture.empty()) outcome.picture = picture;
       }
       outcome.score = [score = sum / static_cast<double>(models->get().size())] { return score; };

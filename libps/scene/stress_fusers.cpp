@@ -71,7 +71,8 @@ Cloud fuse_by(const std::string& method, const std::vector<View>& frames) {
     const ViewSource source = source_of(frames);
     FrameStudyOptions options;
     options.scales = true;
-    return fuse(heeding(source, study_frames(source, options)));
+    const FrameStudy study = study_frames(source, options);
+    return fuse(heeding(source, study), heeding(FuseOptions(), study));
   }
   if (method == kOursUnguarded) {
     FuseOptions options;

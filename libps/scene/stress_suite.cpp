@@ -6,6 +6,7 @@
 
 #include "libps/eval/cloud_metrics.h"
 #include "libps/eval/image_metrics.h"
+#include "libps/eval/statistics.h"
 #include "libps/geometry/splat.h"
 
 namespace ps::stress {
@@ -77,11 +78,15 @@ Image picture_of(const Cloud& cloud, const View& truth) {
   return splat(cloud, truth.intrinsics, truth.world_from_cam, options).color;
 }
 
-double psnr_of(const Cloud& cloud, const std::vector<View>& views) {
-  double sum = 0;
-  for (const View& view : views) sum += psnr(picture_of(cloud, view), view.color);
-  return cloud.empty() ? std::numeric_limits<double>::quiet_NaN()
-                       : sum / static_cast<double>(views.size());
+double psnr_of(const Cloud& cloud, const World& world) {
+  if (cloud.empty()) return std::numeric_limits<double>::quiet_NaN();
+  std::vector<double> scores;
+  for (std::size_t i = 0; i < world.held_out.size(); ++i) {
+    const View& view = world.held_out[i];
+    if (cv::countNonZero(world.covered[i]) == 0) continue;
+    scores.push_back(psnr(picture_of(cloud, view), view.color, world.covered[i]));
+  }
+  return mean(scores);
 }
 
 double f_score_of(const Cloud& cloud, const Cloud& truth) {

@@ -36,8 +36,9 @@ std::vector<double> values_of(const SuiteOptions& options, std::vector<double> v
 /// @brief A cloud as every method's is shown: radius 2, renormalised.
 Image picture_of(const Cloud& cloud, const View& truth);
 
-/// @return dB, mean over views; holes count as black. NaN for an empty cloud.
-double psnr_of(const Cloud& cloud, const std::vector<View>& views);
+/// @return dB, mean over the views left out, where frames cover them; holes count as black. NaN for
+/// an empty cloud.
+double psnr_of(const Cloud& cloud, const World& world);
 
 /// @return the F-score in % of kNearEnough metres, of evenly spread points of both clouds
 double f_score_of(const Cloud& cloud, const Cloud& truth);

@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "libps/core/random.h"
+#include "libps/eval/pairs.h"
 #include "libps/geometry/lift.h"
 #include "libps/rooms/camera.h"
 #include "libps/rooms/shot.h"
@@ -60,8 +61,11 @@ World make_world(std::uint64_t seed, int frames, int held_out, cv::Size size) {
   }
   LiftOptions all;
   all.edge_footprints = 0;
-  for (const auto* views : {&world.frames, &world.held_out}) {
-    for (const View& view : *views) world.truth += lift(view, 0, Origin::observed, all);
+  for (const View& view : world.frames) world.truth += lift(view, 0, Origin::observed, all);
+  for (const View& view : world.held_out) {
+    Mask covered = Mask::zeros(view.depth.size());
+    for (const View& frame : world.frames) covered |= true_visibility(frame, view).visible;
+    world.covered.push_back(covered);
   }
   return world;
 }

@@ -14,7 +14,8 @@ namespace ps::stress {
 /// Frames of a room, views of it that were left out, and its true surface.
 struct World {
   std::vector<View> frames, held_out;
-  Cloud truth;  ///< all pixels of both, lifted
+  std::vector<Mask> covered;  ///< of views left out: pixels whose surface frames see
+  Cloud truth;                ///< all pixels of the frames, lifted
 };
 
 /// @brief A room that somebody walks about in, looking around.
