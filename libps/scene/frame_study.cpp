@@ -7,11 +7,11 @@
 #include <functional>
 #include <opencv2/imgproc.hpp>
 #include <string>
-#include <tuple>
 
 #include "libps/core/error.h"
 #include "libps/core/parallel.h"
 #include "libps/eval/statistics.h"
+#include "libps/scene/lone_pixels.h"
 
 namespace ps {
 namespace {
@@ -20,9 +20,12 @@ constexpr std::size_t kLeastOverlap = 40;            ///< pixels; less is no pai
 constexpr float kDarkest = .04f, kBrightest = .97f;  ///< beyond, sensors clip
 constexpr double kWideTolerance = 0.25;              ///< share; scales may be this far apart
 constexpr int kRounds = 4;                           ///< of evening out scales
-constexpr double kTolerancePerSpread = 2;            ///< of fusing, and at most:
+constexpr double kExact = .02;  ///< spread of a pair's log ratios that is as good as none
+constexpr double kEvener = .6;  ///< of the spread is left where scales were wrong
+constexpr double kTolerancePerSpread = 2;  ///< of fusing, and at most:
 constexpr double kMostTolerance = .15;
-constexpr double kAnchor = 1e-3;  ///< of unknowns to 0, in pairs
+constexpr double kAgreeing = .05;  ///< share of a depth; lone_pixels.h
+constexpr double kAnchor = 1e-3;   ///< of unknowns to 0, in pairs
 
 /// A frame, reduced, and the least and greatest depth around each of its pixels.
 struct Small {
@@ -118,17 +121,29 @@ std::vector<Pair> plan_pairs(const std::vector<Small>& frames, int partners) {
   return pairs;
 }
 
-void hold_against_each_other(const std::vector<Small>& frames, const std::vector<double>& scales,
+void hold_against_each_other(const std::vector<Small>& frames, const std::vector<FrameWord>& words,
                              double tolerance, std::vector<Pair>* pairs) {
   parallel_for(pairs->size(), [&](std::size_t i) {
     Pair fresh;
     fresh.a = (*pairs)[i].a;
     fresh.b = (*pairs)[i].b;
     const Small &a = frames[fresh.a], &b = frames[fresh.b];
-    compare(a, b, scales[fresh.a], scales[fresh.b], tolerance, false, &fresh);
-    compare(b, a, scales[fresh.b], scales[fresh.a], tolerance, true, &fresh);
+    compare(a, b, words[fresh.a].scale, words[fresh.b].scale, tolerance, false, &fresh);
+    compare(b, a, words[fresh.b].scale, words[fresh.a].scale, tolerance, true, &fresh);
     (*pairs)[i] = std::move(fresh);
   });
+}
+
+/// What a pair says of one ratio, and how much it is to be believed.
+struct Word {
+  double ratio = 0, weight = 0;
+};
+
+Word word_of(std::vector<double> ratios) {
+  if (ratios.size() < kLeastOverlap) return {};
+  const double middle = median(ratios);
+  for (double& ratio : ratios) ratio = std::abs(ratio - middle);
+  return {middle, 1 / std::pow(median(std::move(ratios)) + kExact, 2)};
 }
 
 /// The x of least squares of x_a - x_b = the pairs' median ratio; they average to 0.
@@ -139,15 +154,14 @@ Eigen::VectorXd evened(std::size_t count, const std::vector<Pair>& pairs,
   Eigen::VectorXd right = Eigen::VectorXd::Zero(n);
   for (Eigen::Index i = 0; i < n; ++i) entries.emplace_back(i, i, kAnchor);
   for (const Pair& pair : pairs) {
-    if (ratios(pair).size() < kLeastOverlap) continue;
-    const double ratio = median(ratios(pair));
+    const Word word = word_of(ratios(pair));
     const auto a = static_cast<Eigen::Index>(pair.a), b = static_cast<Eigen::Index>(pair.b);
-    for (const auto& [i, j, w] : {std::tuple(a, a, 1.), std::tuple(b, b, 1.), std::tuple(a, b, -1.),
-                                  std::tuple(b, a, -1.)}) {
-      entries.emplace_back(i, j, w);
-    }
-    right[a] += ratio;
-    right[b] -= ratio;
+    entries.emplace_back(a, a, word.weight);
+    entries.emplace_back(b, b, word.weight);
+    entries.emplace_back(a, b, -word.weight);
+    entries.emplace_back(b, a, -word.weight);
+    right[a] += word.weight * word.ratio;
+    right[b] -= word.weight * word.ratio;
   }
   Eigen::SparseMatrix<double> matrix(n, n);
   matrix.setFromTriplets(entries.begin(), entries.end());
@@ -196,6 +210,24 @@ double spread_of(const std::vector<Pair>& pairs) {
   return spreads.empty() ? 0 : median(std::move(spreads));
 }
 
+/// Evens out scales where that is what is wrong with the frames.
+void even_scales(const std::vector<Small>& frames, std::vector<Pair>* pairs, FrameStudy* study) {
+  FrameStudy evener = *study;
+  std::vector<Pair> fresh = *pairs;
+  for (int round = 0; round < kRounds; ++round) {
+    const Eigen::VectorXd logs = evened(
+        frames.size(), fresh, [](const Pair& p) -> const auto& { return p.depth; });
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      evener.words[i].scale *= std::exp(-logs[static_cast<Eigen::Index>(i)]);
+    }
+    hold_against_each_other(frames, evener.words, kWideTolerance, &fresh);
+  }
+  evener.spread = spread_of(fresh);
+  if (!(evener.spread < kEvener * study->spread)) return;
+  *study = std::move(evener);
+  *pairs = std::move(fresh);
+}
+
 }  // namespace
 
 FrameStudy study_frames(const ViewSource& source, const FrameStudyOptions& options) {
@@ -208,26 +240,18 @@ FrameStudy study_frames(const ViewSource& source, const FrameStudyOptions& optio
     frames[i] = reduced(source.load(i), options.width, "frame " + std::to_string(i));
   }
   FrameStudy study;
-  std::vector<FrameWord>& words = study.words;
-  words.resize(source.count);
+  study.words.resize(source.count);
   std::vector<Pair> pairs = plan_pairs(frames, options.partners);
-  std::vector<double> scales(source.count, 1);
-  for (int round = 0; options.scales && round < kRounds; ++round) {
-    hold_against_each_other(frames, scales, kWideTolerance, &pairs);
-    const Eigen::VectorXd logs = evened(
-        source.count, pairs, [](const Pair& p) -> const auto& { return p.depth; });
-    for (std::size_t i = 0; i < scales.size(); ++i) {
-      scales[i] *= std::exp(-logs[static_cast<Eigen::Index>(i)]);
-      words[i].scale = scales[i];
-    }
-  }
-  hold_against_each_other(frames, scales, options.tolerance, &pairs);
-  refuse(pairs, options, &words);
-  const auto out = [&](const Pair& p) { return words[p.a].refused || words[p.b].refused; };
+  hold_against_each_other(frames, study.words, options.tolerance, &pairs);
+  refuse(pairs, options, &study.words);
+  const auto out = [&](const Pair& p) {
+    return study.words[p.a].refused || study.words[p.b].refused;
+  };
   pairs.erase(std::remove_if(pairs.begin(), pairs.end(), out), pairs.end());
-  if (options.gains) even_colors(pairs, &words);
-  hold_against_each_other(frames, scales, kWideTolerance, &pairs);
+  hold_against_each_other(frames, study.words, kWideTolerance, &pairs);
   study.spread = spread_of(pairs);
+  if (options.scales) even_scales(frames, &pairs, &study);
+  if (options.gains) even_colors(pairs, &study.words);
   return study;
 }
 
@@ -237,7 +261,8 @@ ViewSource heeding(const ViewSource& source, const FrameStudy& study) {
     throw Error("frame study", std::to_string(words.size()) + " words",
                 "one for each of " + std::to_string(source.count) + " frames");
   }
-  return {source.count, [source, words](std::size_t i) {
+  const double agreeing = std::max(kAgreeing, 3 * study.spread);
+  return {source.count, [source, words, agreeing](std::size_t i) {
             if (words[i].refused) return View();
             View view = source.load(i);
             if (view.depth.empty()) return view;
@@ -245,6 +270,7 @@ ViewSource heeding(const ViewSource& source, const FrameStudy& study) {
             view.color = view.color.clone();
             view.depth = view.depth.clone();
             view.depth *= words[i].scale;
+            view.depth.setTo(0, lone_pixels(view.depth, agreeing));
             for (cv::Vec3f& c : view.color) {
               for (int k = 0; k < 3; ++k) c[k] = std::clamp(c[k] * words[i].gain[k], 0.f, 1.f);
             }

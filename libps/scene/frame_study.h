@@ -11,11 +11,11 @@ struct FrameStudyOptions {
   bool gains = true;    ///< even out exposure and white balance
   bool scales = false;  ///< even out the scales of depths: for those that networks guess
   bool refuse = true;   ///< leave out frames that the others contradict
-  int width = 80;       ///< pixels across to which frames are reduced, at most
+  int width = 128;      ///< pixels across to which frames are reduced, at most
   int partners = 16;    ///< other frames that a frame is held against, at most
   /// Two depths along a ray contradict each other when they differ by more than this share beyond
   /// all depths around the pixel.
-  double tolerance = 0.03;
+  double tolerance = 0.08;
   /// A frame is left out when in the middle one of its pairs more than this share of what both
   /// see is contradicted, and more than three times what is usual among the frames.
   double contradicted = 0.15;
@@ -45,8 +45,9 @@ struct FrameStudy {
 /// Throws ps::Error when an option is unsound or a frame is; errors of load() are passed on.
 FrameStudy study_frames(const ViewSource& source, const FrameStudyOptions& options = {});
 
-/// @return the source with the words heeded: gains and scales applied, empty views for refused
-/// frames. Throws ps::Error when there are more or fewer words than frames.
+/// @return the source with the words heeded: gains and scales applied, depths that no neighbour
+/// shares removed (lone_pixels.h), empty views for refused frames. Throws ps::Error when there are
+/// more or fewer words than frames.
 ViewSource heeding(const ViewSource& source, const FrameStudy& study);
 
 /// @return the options with a tolerance that takes two frames' depths of one surface for one: as it

@@ -34,12 +34,12 @@ Outcome fuse_and_score(const std::vector<World>& worlds, const std::string& meth
     clouds->push_back(fuse_by(method, disturb(worlds[i].frames, value, i)));
     note(clouds->back(), &outcome);
   }
-  outcome.picture = picture_of(clouds->front(), worlds[0].held_out[0]);
-  outcome.score = [&worlds, clouds, score] {
+  outcome.picture = picture_of(method, clouds->front(), worlds[0].held_out[0]);
+  outcome.score = [&worlds, clouds, method, score] {
     std::vector<double> scores;
     for (std::size_t i = 0; i < worlds.size(); ++i) {
       const Cloud& cloud = (*clouds)[i];
-      scores.push_back(score == Score::psnr ? psnr_of(cloud, worlds[i])
+      scores.push_back(score == Score::psnr ? psnr_of(method, cloud, worlds[i])
                                             : f_score_of(cloud, worlds[i].truth));
     }
     return mean(scores);
@@ -86,7 +86,7 @@ void FusionAxes::add_depths() {
       "% of the depth", {0, 1, 2, 4, 8, 16, 32}, Score::f_score, 50,
       each([](const View& v, double x, const Draw& d) { return with_noise(v, x / 100, d); }));
   add("depth-bias", "Depths of all frames are too large by one factor", "%",
-      {0, 0.5, 1, 2, 4, 8, 16}, Score::f_score, 50,
+      {0, 0.5, 1, 2, 4, 8, 16}, Score::psnr, 17,
       each([](const View& v, double x, const Draw&) { return with_bias(v, x / 100); }));
   add("depth-scale", "Depths of each frame are wrong by a factor of its own, as networks' are",
       "% spread", {0, 1, 2, 4, 8, 16, 32}, Score::f_score, 50,
@@ -95,7 +95,7 @@ void FusionAxes::add_depths() {
       {0, 20, 40, 60, 80, 90, 95, 98, 100}, Score::psnr, 17,
       each([](const View& v, double x, const Draw& d) { return with_holes(v, x / 100, d); }));
   add("depth-edges", "Depths are smeared over edges, so that points fly between surfaces", "pixels",
-      {0, 2, 4, 6, 8, 12, 16}, Score::f_score, 70,
+      {0, 2, 4, 8, 16, 32, 64}, Score::psnr, 17,
       each([](const View& v, double x, const Draw&) { return with_soft_edges(v, x); }));
   add("glass", "Panes of glass: nothing, the pane or what is beyond, by chance at each pixel",
       "% of the pixels", {0, 5, 10, 20, 40, 60, 80, 100}, Score::f_score, 70,
@@ -113,7 +113,7 @@ void FusionAxes::add_cameras() {
         const auto n = static_cast<std::uint32_t>(frames.size());
         const auto lost = static_cast<std::uint32_t>(value / 100 * n + .5);
         for (std::uint32_t k = 0; k < lost; ++k) {
-          const std::uint32_t i = (3 + 5 * k) % n;
+          const std::uint32_t i = (3 + 7 * k) % n;
           result[i] = with_pose_noise(frames[i], 20, {seed, i});
         }
         return result;

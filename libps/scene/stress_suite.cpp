@@ -8,6 +8,8 @@
 #include "libps/eval/image_metrics.h"
 #include "libps/eval/statistics.h"
 #include "libps/geometry/splat.h"
+#include "libps/scene/closed_splat.h"
+#include "libps/scene/stress_fusers.h"
 
 namespace ps::stress {
 namespace {
@@ -71,20 +73,24 @@ std::vector<double> values_of(const SuiteOptions& options, std::vector<double> v
   return dense;
 }
 
-Image picture_of(const Cloud& cloud, const View& truth) {
+Image picture_of(const std::string& method, const Cloud& cloud, const View& truth) {
   SplatOptions options;
-  options.radius = 2;
   options.renormalise = true;
+  if (method == kOurs) {
+    options.radius = kDetail;
+    return closed_splat(cloud, truth.intrinsics, truth.world_from_cam, options, kWidest).color;
+  }
+  options.radius = kRadius;
   return splat(cloud, truth.intrinsics, truth.world_from_cam, options).color;
 }
 
-double psnr_of(const Cloud& cloud, const World& world) {
+double psnr_of(const std::string& method, const Cloud& cloud, const World& world) {
   if (cloud.empty()) return std::numeric_limits<double>::quiet_NaN();
   std::vector<double> scores;
   for (std::size_t i = 0; i < world.held_out.size(); ++i) {
     const View& view = world.held_out[i];
     if (cv::countNonZero(world.covered[i]) == 0) continue;
-    scores.push_back(psnr(picture_of(cloud, view), view.color, world.covered[i]));
+    scores.push_back(psnr(picture_of(method, cloud, view), view.color, world.covered[i]));
   }
   return mean(scores);
 }

@@ -25,6 +25,9 @@ class Lazy {
   std::optional<T> value_;
 };
 
+/// Pixels: of splats, of ours at their narrowest and at their widest.
+constexpr float kRadius = 2, kDetail = 1.5f, kWidest = 64;
+
 using Worlds = std::shared_ptr<Lazy<std::vector<World>>>;
 /// @return the seed of room i
 std::uint64_t room_seed(const SuiteOptions& options, int i);
@@ -33,12 +36,13 @@ Worlds make_worlds(const SuiteOptions& options);
 /// @return the values, with the ones half way between them if the suite is dense
 std::vector<double> values_of(const SuiteOptions& options, std::vector<double> values);
 
-/// @brief A cloud as every method's is shown: radius 2, renormalised.
-Image picture_of(const Cloud& cloud, const View& truth);
+/// @brief A cloud as a method of fusing shows it: ours by closed splats (closed_splat.h), the
+/// others by splats of radius 2; renormalised.
+Image picture_of(const std::string& method, const Cloud& cloud, const View& truth);
 
 /// @return dB, mean over the views left out, where frames cover them; holes count as black. NaN for
 /// an empty cloud.
-double psnr_of(const Cloud& cloud, const World& world);
+double psnr_of(const std::string& method, const Cloud& cloud, const World& world);
 
 /// @return the F-score in % of kNearEnough metres, of evenly spread points of both clouds
 double f_score_of(const Cloud& cloud, const Cloud& truth);
