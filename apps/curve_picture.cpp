@@ -72,7 +72,7 @@ void draw_axes(Image& image, const CurveChart& chart, const Scale& scale) {
   cv::rectangle(image, kPlot, kInk);
   put(image, chart.title, {kPlot.x, 24}, .5);
   put(image, chart.x_label, {kPlot.x + 90, bottom + 42});
-  put(image, chart.y_label, {8, kPlot.y - 6}, .38);
+  put(image, chart.y_label, {8, kPlot.y - 18}, .38);
   const int limit = scale.y(chart.limit);
   for (int x = kPlot.x; x < right; x += 10) cv::line(image, {x, limit}, {x + 5, limit}, kInk);
 }

@@ -100,6 +100,11 @@ void FusionAxes::add_depths() {
   add("glass", "Panes of glass: nothing, the pane or what is beyond, by chance at each pixel",
       "% of the pixels", {0, 5, 10, 20, 40, 60, 80, 100}, Score::f_score, 70,
       each([](const View& v, double x, const Draw& d) { return with_glass(v, x / 100, d); }));
+  add("mirror", "A round mirror on a wall: its depth is that of what it reflects",
+      "metres of radius", {0, .1, .2, .4, .8, 1.6}, Score::f_score, 85,
+      [](const std::vector<View>& frames, double value, std::uint64_t) {
+        return with_mirror(frames, value);
+      });
 }
 
 void FusionAxes::add_cameras() {

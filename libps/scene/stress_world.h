@@ -61,6 +61,9 @@ View with_focal(const View& view, double share);
 /// depth of something else up to three times as far.
 View with_glass(const View& view, double share, const Draw& draw);
 
+/// A round mirror of this radius, metres, on what the first frame's middle shows: the depth there
+/// is that of what it reflects, the walls of the box that all frames see.
+std::vector<View> with_mirror(const std::vector<View>& frames, double radius);
 /// So many times narrower, at least 2 pixels wide.
 View shrunk(const View& view, double times);
 

@@ -85,7 +85,10 @@ TEST(FrameStudy, spread_is_that_of_noise_and_widens_the_tolerance) {
   std::vector<View> views = frames();
   for (std::size_t i = 0; i < views.size(); ++i) {
     for (int y = 0; y < kCamera.height; ++y) {
-      for (int x = 0; x < kCamera.width; ++x) views[i].depth(y, x) *= (x + y) % 2 ? 1.04f : .96f;
+      for (int x = 0; x < kCamera.width; ++x) {
+        const double any = std::sin(12.9898 * x + 78.233 * y + 3.7 * static_cast<double>(i));
+        views[i].depth(y, x) *= static_cast<float>(1 + .06 * any);
+      }
     }
   }
   const FrameStudy study = study_frames(source_of(views));
