@@ -161,12 +161,10 @@ void add_second(const SceneInputArguments& a, const View& first, const DepthMode
 }  // namespace
 
 Json fill_holes(View& view, const DepthModel& model) {
-  const Mask known = view.depth > 0, unknown = ~known;
-  const int holes = cv::countNonZero(unknown);
+  const int holes = static_cast<int>(view.depth.total()) - cv::countNonZero(view.depth > 0);
   if (holes == 0) return {{"pixels", 0}};
-  const Depth guess = photo_depth(model.net, view.color, view.intrinsics, model.scale);
-  const AlignedDepth aligned = align_depth(guess, view.depth, known & 1, unknown & 1);
-  aligned.depth.copyTo(view.depth, unknown);
+  const AlignedDepth aligned = completed_depth(model.net, view, model.scale);
+  view.depth = aligned.depth;
   Json report = {{"pixels", holes}, {"agreed", aligned.agreed}, {"residual", aligned.residual}};
   if (!aligned.agreed) report["why"] = aligned.why;
   return report;

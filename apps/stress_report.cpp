@@ -14,6 +14,7 @@ namespace ps::apps {
 namespace {
 
 constexpr std::size_t kSheetColumns = 3;
+constexpr double kTie = 1.02;  ///< steps are too far apart to tell less
 
 std::string number(double value) {
   char text[32];
@@ -49,7 +50,7 @@ bool beaten(const StressRow& row, std::string* by) {
   const auto& curves = row.result.curves;
   for (std::size_t i = 1; i < curves.size(); ++i) {
     const bool form_of_ours = curves[i].method.rfind(curves[0].method, 0) == 0;
-    if (!form_of_ours && curves[i].breaks > curves[0].breaks) {
+    if (!form_of_ours && curves[i].breaks > kTie * curves[0].breaks) {
       *by += (by->empty() ? "" : ", ") + curves[i].method;
     }
   }
@@ -125,8 +126,9 @@ std::string stress_markdown(const std::vector<StressRow>& rows) {
     }
   }
   const auto list = [](const std::string& lines) { return lines.empty() ? "None.\n" : lines; };
-  text += "\n## Where another breaks later\n" + list(beaten_list) + "\n## Jumps of ours\n" +
-          list(jumps) + "\n## Violations\n" + list(violations) + "\n## Axes\n";
+  text += "\n## Where another breaks later, by more than 2 %\n" + list(beaten_list) +
+          "\n## Jumps of ours\n" + list(jumps) + "\n## Violations\n" + list(violations) +
+          "\n## Axes\n";
   for (const StressRow& row : rows) {
     const std::string& name = row.axis.name;
     text += "\n### " + name + "\n" + row.axis.what + "; " + stress::criterion_of(row.axis) +

@@ -142,4 +142,13 @@ Depth photo_depth(const models::DepthNet& net, const Image& photo, const Intrins
   return depth * (focal / (scale.canonical_focal * kSide));
 }
 
+AlignedDepth completed_depth(const models::DepthNet& net, const View& photo,
+                             const DepthScale& scale) {
+  const Mask known = photo.depth > 0, unknown = ~known;
+  const Depth guess = photo_depth(net, photo.color, photo.intrinsics, scale);
+  AlignedDepth aligned = align_depth(guess, photo.depth, known & 1, unknown & 1);
+  photo.depth.copyTo(aligned.depth, known);
+  return aligned;
+}
+
 }  // namespace ps

@@ -5,6 +5,8 @@
 
 #include "libps/core/image.h"
 #include "libps/geometry/camera.h"
+#include "libps/geometry/depth_alignment.h"
+#include "libps/geometry/view.h"
 #include "libps/models/depth_net.h"
 
 namespace ps {
@@ -42,5 +44,10 @@ void check(const DepthScale& scale, const std::string& where);
 /// gives what is not finite.
 Depth photo_depth(const models::DepthNet& net, const Image& photo, const Intrinsics& lens,
                   const DepthScale& scale = {});
+
+/// @brief A photo's measured depth, its holes filled by the network's, which is made to continue it
+/// (depth_alignment.h). What was measured stays. Throws ps::Error as photo_depth() does.
+AlignedDepth completed_depth(const models::DepthNet& net, const View& photo,
+                             const DepthScale& scale = {});
 
 }  // namespace ps

@@ -7,6 +7,7 @@
 #include "libps/eval/image_metrics.h"
 #include "libps/eval/pairs.h"
 #include "libps/eval/statistics.h"
+#include "libps/scene/photo_depth.h"
 #include "libps/scene/room_view.h"
 #include "libps/scene/stress_suite.h"
 
@@ -17,11 +18,15 @@ constexpr double kTurned = 20;                      ///< degrees to the right, u
 const Eigen::Vector3d kMoved(.2, 0, 0);             ///< metres, unless an axis moves
 constexpr double kChange = .1, kMostChanged = .01;  ///< of colours; share of what was seen
 
+constexpr int kSeam = 2;  ///< pixels
+const std::string kOurs = "ours", kUnguarded = "ours, no guard";
+
 /// What a method is asked: the input as it knows it, and where to look from.
 struct Question {
   View input;
   Intrinsics lens;
   Pose world_from_cam;
+  bool holes = false;  ///< the input lacks depth where it has colour
   double temperature = ViewMethodOptions().scene.outpaint.temperature;
 };
 /// Where a picture is held against the truth. What nobody can know is invented by all: there PSNR
@@ -46,10 +51,12 @@ Ask about(const std::function<View(const View&, double, const Draw&)>& disturb) 
   };
 }
 
-/// How what the input's points show was changed: its share of all that they show.
+/// How what the input's points show was changed, away from seams, where splats mix: its share of
+/// all that they show.
 std::string overwritten(const MethodView& shown, const MethodView& points) {
   std::size_t changed = 0;
-  const cv::Mat1b known(shown.seen & points.seen);
+  cv::Mat1b known = shown.seen & points.seen;
+  cv::erode(known, known, cv::Mat1b(2 * kSeam + 1, 2 * kSeam + 1, 1));
   for (int y = 0; y < known.rows; ++y) {
     for (int x = 0; x < known.cols; ++x) {
       if (!known(y, x)) continue;
@@ -87,7 +94,7 @@ class PhotoAxes {
     axis.score = axis.geometry ? "PSNR of what the photo sees of the view" : "PSNR of the view";
     axis.score_unit = "dB";
     axis.limit = limit;
-    axis.methods = {"ours", "no-outpainter", "mean-colour", "telea", "nearest", "copy"};
+    axis.methods = {kOurs, "no-outpainter", "mean-colour", "telea", "nearest", "copy"};
     const auto shared = shared_;
     axis.run = [=](const std::string& method, double value) {
       return shared->show(method, value, ask, where);
@@ -97,6 +104,11 @@ class PhotoAxes {
       return shared->truth(photo, ask(photo.view, value, {})).color;
     };
     axes_.push_back(std::move(axis));
+  }
+
+  /// Shows the last axis without its guard too.
+  void with_unguarded() {
+    axes_.back().methods.insert(axes_.back().methods.begin() + 1, kUnguarded);
   }
 
   std::vector<Axis> take() { return std::move(axes_); }
@@ -130,7 +142,15 @@ class PhotoAxes {
       return known;
     }
 
-    MethodView shown_by(const std::string& method, const Question& question) {
+    /// Ours fills holes of depth first, as `scene` does.
+    void complete(Question* question) {
+      const SceneNetworks& scene = networks.get().scene;
+      question->input.depth =
+          completed_depth(*scene.depth, question->input, scene.depth_scale).depth;
+    }
+
+    MethodView shown_by(const std::string& name, const Question& question) {
+      const std::string method = name == kUnguarded ? kOurs : name;
       ViewMethodOptions method_options;
       method_options.scene.outpaint.samples = options.samples;
       method_options.scene.outpaint.seed = options.seed;
@@ -147,10 +167,10 @@ class PhotoAxes {
       std::vector<double> scores;
       for (std::size_t i = 0; i < photos.get().size(); ++i) {
         const Photo& photo = photos.get()[i];
-        const Question question =
-            ask(photo.view, value, {options.seed, static_cast<std::uint32_t>(i)});
+        Question question = ask(photo.view, value, {options.seed, static_cast<std::uint32_t>(i)});
+        if (method == kOurs && question.holes) complete(&question);
         const MethodView shown = shown_by(method, question);
-        if (method == "ours" && outcome.overwritten.empty()) {
+        if ((method == kOurs || method == kUnguarded) && outcome.overwritten.empty()) {
           outcome.overwritten = overwritten(shown, shown_by("mean-colour", question));
         }
         outcome.finite = outcome.finite && cv::checkRange(shown.color);
@@ -176,17 +196,19 @@ void add_looks(PhotoAxes* axes) {
             [](const View& photo, double x, const Draw&) {
               return ask(photo, photo, x, Eigen::Vector3d::Zero());
             });
-  axes->add("translation", "The camera moves to the right", "metres", {0, .1, .2, .4, .8, 1.2},
+  axes->add("translation", "The camera moves to the right", "metres", {0, .1, .2, .4, .6, .8},
             Where::visible, 17, [](const View& photo, double x, const Draw&) {
               return ask(photo, photo, 0, {x, 0, 0});
             });
-  axes->add("missing-share", "The photo's depth is missing from its right side on",
-            "% of the pixels", {0, 10, 25, 50, 75, 90, 100}, Where::all, 12,
+  axes->add("missing-share", "The photo is missing from its right side on", "% of the pixels",
+            {0, 10, 25, 50, 75, 90, 100}, Where::all, 12,
             [](const View& photo, double x, const Draw&) {
               View input = photo;
               input.depth = photo.depth.clone();
               const int from = static_cast<int>((1 - x / 100) * input.depth.cols);
+              input.color = photo.color.clone();
               input.depth.colRange(from, input.depth.cols).setTo(0);
+              input.color.colRange(from, input.color.cols).setTo(cv::Scalar::all(.5));
               return ask(input, photo, 0, Eigen::Vector3d::Zero());
             });
   axes->add("temperature", "The temperature of sampling", "", {0, .35, .7, 1, 1.5, 2}, Where::all,
@@ -208,10 +230,14 @@ void add_inputs(PhotoAxes* axes) {
   axes->add("photo-bias", "The photo's depths are too large by one factor", "%",
             {0, 10, 25, 50, 100, 200, 400}, Where::visible, 17,
             about([](const View& v, double x, const Draw&) { return with_bias(v, x / 100); }));
-  axes->add(
-      "photo-holes", "The photo's depth is missing in blots", "% of the pixels",
-      {0, 10, 25, 50, 75, 90, 100}, Where::visible, 17,
-      about([](const View& v, double x, const Draw& d) { return with_holes(v, x / 100, d); }));
+  axes->add("photo-holes", "The photo's depth is missing in blots", "% of the pixels",
+            {0, 10, 25, 50, 75, 90, 100}, Where::visible, 17,
+            [](const View& photo, double x, const Draw& draw) {
+              Question question = ask(with_holes(photo, x / 100, draw), photo);
+              question.holes = true;
+              return question;
+            });
+  axes->with_unguarded();
   axes->add("photo-edges", "The photo's depth is smeared over edges", "pixels",
             {0, 2, 4, 8, 16, 32, 64}, Where::visible, 17,
             about([](const View& v, double x, const Draw&) { return with_soft_edges(v, x); }));
