@@ -47,6 +47,7 @@ Small reduced(const View& view, int width, const std::string& where) {
   cv::resize(view.depth, small.view.depth, size, 0, 0, cv::INTER_NEAREST_EXACT);
   cv::patchNaNs(small.view.depth, 0);
   small.view.depth.setTo(0, small.view.depth < 0);
+  small.view.depth.setTo(0, lone_pixels(small.view.depth, kAgreeing));
   const cv::Mat1b window(3, 3, 1);
   Depth known = small.view.depth.clone();
   cv::dilate(known, small.farthest, window);
@@ -168,25 +169,40 @@ Eigen::VectorXd evened(std::size_t count, const std::vector<Pair>& pairs,
   return Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(right);
 }
 
-void refuse(const std::vector<Pair>& pairs, const FrameStudyOptions& options,
-            std::vector<FrameWord>* words) {
+/// Each frame's middle share of what a pair contradicts, without pairs of refused frames.
+void weigh(const std::vector<Pair>& pairs, std::vector<FrameWord>* words) {
   std::vector<std::vector<double>> shares(words->size());
   for (const Pair& pair : pairs) {
     const std::size_t seen = pair.agree + pair.before;
     if (seen < kLeastOverlap) continue;
     const double share = static_cast<double>(pair.before) / static_cast<double>(seen);
-    shares[pair.a].push_back(share);
-    shares[pair.b].push_back(share);
+    if (!(*words)[pair.b].refused) shares[pair.a].push_back(share);
+    if (!(*words)[pair.a].refused) shares[pair.b].push_back(share);
   }
-  std::vector<double> usual;
   for (std::size_t i = 0; i < words->size(); ++i) {
-    if (shares[i].empty()) continue;
-    (*words)[i].contradicted = median(shares[i]);
-    usual.push_back((*words)[i].contradicted);
+    (*words)[i].contradicted = shares[i].empty() ? 0 : median(std::move(shares[i]));
   }
-  if (usual.empty()) return;
-  const double most = std::max(options.contradicted, 3 * median(usual));
-  for (FrameWord& word : *words) word.refused = options.refuse && word.contradicted > most;
+}
+
+/// Refuses the worst frame, then the worst of what is left, and so on; none at all if that comes to
+/// half of them, as nobody can tell then which half is right.
+void refuse(const std::vector<Pair>& pairs, const FrameStudyOptions& options,
+            std::vector<FrameWord>* words) {
+  weigh(pairs, words);
+  for (std::size_t refused = 0; options.refuse && 2 * refused < words->size(); ++refused) {
+    std::vector<double> usual;
+    FrameWord* worst = nullptr;
+    for (FrameWord& word : *words) {
+      if (word.refused) continue;
+      usual.push_back(word.contradicted);
+      if (worst == nullptr || word.contradicted > worst->contradicted) worst = &word;
+    }
+    if (worst == nullptr) return;
+    if (worst->contradicted <= std::max(options.contradicted, 3 * median(std::move(usual)))) return;
+    worst->refused = true;
+    weigh(pairs, words);
+  }
+  for (FrameWord& word : *words) word.refused = false;
 }
 
 void even_colors(const std::vector<Pair>& pairs, std::vector<FrameWord>* words) {
@@ -261,8 +277,7 @@ ViewSource heeding(const ViewSource& source, const FrameStudy& study) {
     throw Error("frame study", std::to_string(words.size()) + " words",
                 "one for each of " + std::to_string(source.count) + " frames");
   }
-  const double agreeing = std::max(kAgreeing, 3 * study.spread);
-  return {source.count, [source, words, agreeing](std::size_t i) {
+  return {source.count, [source, words](std::size_t i) {
             if (words[i].refused) return View();
             View view = source.load(i);
             if (view.depth.empty()) return view;
@@ -270,7 +285,7 @@ ViewSource heeding(const ViewSource& source, const FrameStudy& study) {
             view.color = view.color.clone();
             view.depth = view.depth.clone();
             view.depth *= words[i].scale;
-            view.depth.setTo(0, lone_pixels(view.depth, agreeing));
+            view.depth.setTo(0, lone_pixels(view.depth, kAgreeing));
             for (cv::Vec3f& c : view.color) {
               for (int k = 0; k < 3; ++k) c[k] = std::clamp(c[k] * words[i].gain[k], 0.f, 1.f);
             }

@@ -86,7 +86,7 @@ void FusionAxes::add_depths() {
       "% of the depth", {0, 1, 2, 4, 8, 16, 32}, Score::f_score, 50,
       each([](const View& v, double x, const Draw& d) { return with_noise(v, x / 100, d); }));
   add("depth-bias", "Depths of all frames are too large by one factor", "%",
-      {0, 0.5, 1, 2, 4, 8, 16}, Score::psnr, 17,
+      {0, 0.5, 1, 2, 4, 8, 16}, Score::psnr, 20,
       each([](const View& v, double x, const Draw&) { return with_bias(v, x / 100); }));
   add("depth-scale", "Depths of each frame are wrong by a factor of its own, as networks' are",
       "% spread", {0, 1, 2, 4, 8, 16, 32}, Score::f_score, 50,
@@ -95,7 +95,7 @@ void FusionAxes::add_depths() {
       {0, 20, 40, 60, 80, 90, 95, 98, 100}, Score::psnr, 17,
       each([](const View& v, double x, const Draw& d) { return with_holes(v, x / 100, d); }));
   add("depth-edges", "Depths are smeared over edges, so that points fly between surfaces", "pixels",
-      {0, 2, 4, 8, 16, 32, 64}, Score::psnr, 17,
+      {0, 2, 4, 8, 16, 32, 64}, Score::psnr, 20,
       each([](const View& v, double x, const Draw&) { return with_soft_edges(v, x); }));
   add("glass", "Panes of glass: nothing, the pane or what is beyond, by chance at each pixel",
       "% of the pixels", {0, 5, 10, 20, 40, 60, 80, 100}, Score::f_score, 70,
@@ -127,7 +127,7 @@ void FusionAxes::add_cameras() {
       {0, 1, 2, 4, 8, 16, 32}, Score::psnr, 17,
       each([](const View& v, double x, const Draw&) { return with_focal(v, x / 100); }));
   add("exposure", "Each frame is exposed more or less, and clips", "stops, spread",
-      {0, 0.25, 0.5, 1, 1.5, 2, 3}, Score::psnr, 17,
+      {0, 0.25, 0.5, 1, 1.5, 2, 3}, Score::psnr, 19,
       [](const std::vector<View>& frames, double value, std::uint64_t seed) {
         std::vector<double> stops;
         double mean = 0;
