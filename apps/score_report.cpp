@@ -98,12 +98,6 @@ Json number(double value) {
   return value;
 }
 
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  AtomicFile file(path);
-  file.write(text);
-  file.commit();
-}
-
 std::filesystem::path summary_file(const std::string& output) { return beside(output, "csv"); }
 std::filesystem::path samples_file(const std::string& output) {
   return beside(output, "samples.csv");

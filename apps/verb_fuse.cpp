@@ -20,6 +20,7 @@
 #include "io/trajectory.h"
 #include "libps/core/error.h"
 #include "libps/scene/camera_path.h"
+#include "libps/scene/frame_study.h"
 #include "libps/scene/fuse.h"
 
 namespace ps::apps {
@@ -34,6 +35,7 @@ struct FuseArguments {
   FuseOptions fuse;
   bool no_average = false;
   bool keep_contradicted = false;
+  bool study = false;
   bool compress = false;
 };
 
@@ -194,21 +196,39 @@ FrameList choose_some_frames(const FuseArguments& a, const std::vector<RgbdFolde
   throw Error("--frames", "no frame is in " + a.frames, range.str());
 }
 
+/// Holds the frames against each other.
+FrameStudy studied(const ViewSource& source, const Context& context) {
+  Progress progress(context, "study", source.count);
+  return study_frames({source.count, [&](std::size_t i) {
+                         progress.update(i);
+                         return source.load(i);
+                       }});
+}
+
 Cloud fuse_frames(const FuseArguments& a, const FrameList& frames, const Context& context,
                   FuseReport* report) {
   std::atomic<std::size_t> scaled{0};  // fuse() loads in the background
-  const ViewSource source = {frames.used.size(), [&](std::size_t i) {
-                               const ChosenFrame& chosen = frames.used[i];
-                               FrameNotes notes;
-                               View view =
-                                   load_frame(*chosen.folder, chosen.frame, a.depth_scale, &notes);
-                               scaled += notes.scaled ? 1 : 0;
-                               return view;
-                             }};
+  ViewSource source = {frames.used.size(), [&](std::size_t i) {
+                         const ChosenFrame& chosen = frames.used[i];
+                         FrameNotes notes;
+                         View view =
+                             load_frame(*chosen.folder, chosen.frame, a.depth_scale, &notes);
+                         scaled += notes.scaled ? 1 : 0;
+                         return view;
+                       }};
   Cloud cloud;
+  FuseOptions options = a.fuse;
+  std::size_t refused = 0;
+  if (a.study) {
+    const FrameStudy study = studied(source, context);
+    for (const FrameWord& word : study.words) refused += word.refused ? 1 : 0;
+    source = heeding(source, study);
+    options = heeding(options, study);
+    scaled = 0;
+  }
   {
     Progress progress(context, "fuse", source.count);
-    cloud = fuse(source, a.fuse, report, [&](std::size_t done, std::size_t) {
+    cloud = fuse(source, options, report, [&](std::size_t done, std::size_t) {
       progress.update(done);
       return true;
     });
@@ -220,8 +240,13 @@ Cloud fuse_frames(const FuseArguments& a, const FrameList& frames, const Context
   if (cloud.empty()) {
     throw Error(a.folders.front(), "no pixel can be lifted", "depth in the range asked for");
   }
-  if (report->empty > 0) {
-    context.warn(std::to_string(report->empty) + " frames have no depth at all and are left out");
+  if (refused > 0) {
+    context.warn(std::to_string(refused) +
+                 " frames are left out, as the others contradict them: their poses must be wrong");
+  }
+  if (report->empty > refused) {
+    context.warn(std::to_string(report->empty - refused) +
+                 " frames have no depth at all and are left out");
   }
   if (scaled > 0) {
     context.warn(std::to_string(scaled) +
@@ -260,6 +285,10 @@ void add_fuse(CLI::App& program, const Context& context) {
                  "Keep points where they were first seen, instead of averaging views");
   verb->add_flag("--keep-contradicted", a->keep_contradicted,
                  "Keep points that other views see through");
+  verb->add_flag("--study", a->study,
+                 "Read frames twice, and hold them against each other first: exposures are evened "
+                 "out, frames whose poses are lost are left out, and depths that spread are "
+                 "averaged more widely");
   verb->add_flag("--compress", a->compress, "Compress the .pcd; a .ply is never compressed");
   verb->callback([a, verb, &context] { run_fuse(*a, *verb, context); });
 }

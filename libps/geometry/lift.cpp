@@ -14,6 +14,8 @@ namespace ps {
 namespace {
 
 constexpr std::size_t kRowsAtATime = 16;
+/// In units of noise_of(): three sigma of normal noise. Two such jumps in a row are rare.
+constexpr float kNoisyJump = 3.6f;
 
 /// Positive and finite; written without branches, for whole rows at once.
 bool known(float depth) {
@@ -46,6 +48,24 @@ void clear_flying(const float* __restrict row, const float* __restrict before,
   }
 }
 
+/// The middle difference of a pixel's depth from its neighbours' mean, along rows, as a share of
+/// it: of a smooth image next to none, else the noise. Some pixels speak for all.
+float noise_of(const Depth& clean) {
+  constexpr int kStep = 3;
+  std::vector<float> differences;
+  for (int y = 0; y < clean.rows; y += kStep) {
+    const float* row = clean[y];
+    for (int x = 1; x + 1 < clean.cols; x += kStep) {
+      if (!(row[x - 1] > 0 && row[x] > 0 && row[x + 1] > 0)) continue;
+      differences.push_back(std::fabs(row[x] - .5f * (row[x - 1] + row[x + 1])) / row[x]);
+    }
+  }
+  if (differences.empty()) return 0;
+  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
+  std::nth_element(differences.begin(), middle, differences.end());
+  return *middle;
+}
+
 Point make_point(const Eigen::Vector3d& position, const cv::Vec3f& rgb, double footprint,
                  std::uint16_t view_number, Origin origin) {
   Point p;
@@ -71,9 +91,10 @@ Mask liftable(const Depth& depth, const Intrinsics& intrinsics, const LiftOption
       clean_row(depth[y], depth.cols, least, most, clean[y], result[y]);
     }
   });
+  if (options.edge_footprints <= 0) return result;
   const auto jump_per_metre =
-      static_cast<float>(options.edge_footprints * intrinsics.footprint_per_metre());
-  if (jump_per_metre <= 0) return result;
+      std::max(static_cast<float>(options.edge_footprints * intrinsics.footprint_per_metre()),
+               kNoisyJump * noise_of(clean));
   parallel_chunks(depth.rows, kRowsAtATime, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       const auto clear = [&](int dy, int dx) {

@@ -13,7 +13,7 @@ struct LiftOptions {
   double max_depth = 1e4;  ///< metres; farther pixels are skipped
   /// A pixel is a flying pixel when it hangs between two opposite neighbours, more than this many
   /// footprints behind one and before the other. 0 keeps them all. 8 is a surface seen at 83
-  /// degrees.
+  /// degrees. Where the image is so noisy that chance alone would give as much, it takes more.
   double edge_footprints = 8;
 };
 

@@ -160,6 +160,7 @@ FilledHoles fill_holes(View& view, const models::DepthNet& net, const DepthScale
   if (filled.pixels == 0) return filled;
   const Depth guess = photo_depth(net, view.color, view.intrinsics, scale);
   const AlignedDepth aligned = align_depth(guess, view.depth, known & 1, unknown & 1);
+  view.depth = view.depth.clone();  // other views may share it
   aligned.depth.copyTo(view.depth, unknown);
   filled.agreed = aligned.agreed;
   filled.why = aligned.why;

@@ -7,6 +7,11 @@ app_test(fuse_writes_cloud_report_settings_poses_and_lens [=[
   is "$(json views a.report.json)" -eq 7
   is "$(json points a.report.json)" -gt 5000
   says 'a.ply: [0-9]+ points from 7 views']=])
+app_test(fuse_studies_frames_first_if_asked [=[
+  works fuse $S/walk -o a.ply --study
+  writes a.ply a.report.json
+  works --threads 1 fuse $S/walk -o b.ply --study
+  cmp a.ply b.ply]=])
 app_test(fuse_writes_pcd [=[
   works fuse $S/walk -o a.pcd
   writes a.pcd

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/stress_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+
+#include "apps/contact_sheet.h"
+#include "apps/curve_picture.h"
+#include "io/photo.h"
+
+namespace ps::apps {
+namespace {
+
+constexpr std::size_t kSheetColumns = 3;
+constexpr double kTie = 1.02;  ///< steps are too far apart to tell less
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return std::isinf(value) ? "none" : std::isnan(value) ? "nan" : text;
+}
+
+Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Image sheet_at(const stress::Axis& axis, const stress::AxisResult& result, std::size_t step) {
+  std::vector<SheetTile> tiles;
+  const auto add = [&](const std::string& name, const Image& image) {
+    const std::size_t at = tiles.size();
+    if (image.empty()) return;
+    tiles.push_back(
+        {name, image, static_cast<int>(at / kSheetColumns), static_cast<int>(at % kSheetColumns)});
+  };
+  if (axis.truth) add("truth", axis.truth(axis.values[step]));
+  for (const stress::Curve& curve : result.curves) {
+    const stress::Step& at = curve.steps[step];
+    add(curve.method + " " + number(at.score), at.picture);
+  }
+  return contact_sheet(tiles, 240);
+}
+
+void write_picture(OutputFolder& out, const std::string& name, const Image& image) {
+  if (image.empty()) return;
+  out.write(name, [&](const std::filesystem::path& path) { write_image(path, image); });
+}
+
+/// Axes where ours breaks before another method that is not a form of ours.
+bool beaten(const StressRow& row, std::string* by) {
+  const auto& curves = row.result.curves;
+  for (std::size_t i = 1; i < curves.size(); ++i) {
+    const bool form_of_ours = curves[i].method.rfind(curves[0].method, 0) == 0;
+    if (!form_of_ours && curves[i].breaks > kTie * curves[0].breaks) {
+      *by += (by->empty() ? "" : ", ") + curves[i].method;
+    }
+  }
+  return !by->empty();
+}
+
+}  // namespace
+
+void write_axis_pictures(OutputFolder& out, StressRow& row) {
+  const stress::Axis& axis = row.axis;
+  CurveChart chart;
+  chart.title = axis.name + ": " + stress::criterion_of(axis);
+  chart.x_label = axis.unit;
+  chart.y_label = axis.score_unit;
+  chart.x = axis.values;
+  chart.limit = axis.limit;
+  for (const stress::Curve& curve : row.result.curves) {
+    chart.curves.push_back({curve.method, curve.scores()});
+  }
+  write_picture(out, axis.name + ".png", curve_picture(chart));
+  const std::size_t first = row.result.curves[0].first_broken(axis);
+  if (first > 0) {
+    write_picture(out, axis.name + "-before.png", sheet_at(axis, row.result, first - 1));
+  }
+  if (first < axis.values.size()) {
+    write_picture(out, axis.name + "-after.png", sheet_at(axis, row.result, first));
+  }
+  for (stress::Curve& curve : row.result.curves) {
+    for (stress::Step& step : curve.steps) step.picture.release();
+  }
+}
+
+std::string breaking_table(const std::vector<StressRow>& rows) {
+  std::string text;
+  for (const StressRow& row : rows) {
+    char name[96];
+    std::snprintf(name, sizeof name, "%-16s %-18s", row.axis.name.c_str(), row.axis.unit.c_str());
+    text += name;
+    for (const stress::Curve& curve : row.result.curves) {
+      text += "  " + curve.method + " " + number(curve.breaks);
+    }
+    std::string by;
+    text += beaten(row, &by) ? "  *\n" : "\n";
+  }
+  return text;
+}
+
+std::string stress_markdown(const std::vector<StressRow>& rows) {
+  std::string text =
+      "# Stress\n\nWhere each method breaks, one thing going wrong at a time; none = not within "
+      "the values tried.\n\n| axis | unit | broken where | ours | others "
+      "|\n|---|---|---|---|---|\n";
+  for (const StressRow& row : rows) {
+    const auto& curves = row.result.curves;
+    text += "| " + row.axis.name + " | " + row.axis.unit + " | " +
+            stress::criterion_of(row.axis).substr(13) + " | **" + number(curves[0].breaks) +
+            "** | ";
+    for (std::size_t i = 1; i < curves.size(); ++i) {
+      text += (i > 1 ? ", " : "") + curves[i].method + " " + number(curves[i].breaks);
+    }
+    text += " |\n";
+  }
+  std::string beaten_list, jumps, violations;
+  for (const StressRow& row : rows) {
+    std::string by;
+    if (beaten(row, &by)) beaten_list += "- " + row.axis.name + ": " + by + " breaks later.\n";
+    for (const std::size_t i : row.result.curves[0].jumps) {
+      jumps += "- " + row.axis.name + ": jump towards " + number(row.axis.values[i]) + ".\n";
+    }
+    for (const stress::Violation& v : row.result.violations) {
+      violations +=
+          "- " + v.axis + ", " + v.method + ", at " + number(v.value) + ": " + v.what + "\n";
+    }
+  }
+  const auto list = [](const std::string& lines) { return lines.empty() ? "None.\n" : lines; };
+  text += "\n## Where another breaks later, by more than 2 %\n" + list(beaten_list) +
+          "\n## Jumps of ours\n" + list(jumps) + "\n## Violations\n" + list(violations) +
+          "\n## Axes\n";
+  for (const StressRow& row : rows) {
+    const std::string& name = row.axis.name;
+    text += "\n### " + name + "\n" + row.axis.what + "; " + stress::criterion_of(row.axis) +
+            ".\n\n![curves](" + name + ".png)\n";
+    const std::size_t first = row.result.curves[0].first_broken(row.axis);
+    if (first > 0) text += "![just before](" + name + "-before.png)\n";
+    if (first < row.axis.values.size()) text += "![just after](" + name + "-after.png)\n";
+  }
+  return text;
+}
+
+Json to_json(const std::vector<StressRow>& rows) {
+  Json axes = Json::object();
+  for (const StressRow& row : rows) {
+    Json methods = Json::object();
+    for (const stress::Curve& curve : row.result.curves) {
+      Json scores = Json::array(), refused = Json::object();
+      for (const stress::Step& step : curve.steps) {
+        scores.push_back(json_number(step.score));
+        if (!step.refused.empty()) refused[number(step.value)] = step.refused;
+      }
+      methods[curve.method] = {{"breaks", json_number(curve.breaks)}, {"scores", scores}};
+      if (!refused.empty()) methods[curve.method]["refused"] = refused;
+    }
+    Json jumps = Json::array(), violations = Json::array();
+    for (const std::size_t i : row.result.curves[0].jumps) jumps.push_back(row.axis.values[i]);
+    for (const stress::Violation& v : row.result.violations) {
+      violations.push_back({{"method", v.method}, {"value", v.value}, {"what", v.what}});
+    }
+    axes[row.axis.name] = {{"what", row.axis.what},
+                           {"unit", row.axis.unit},
+                           {"score", row.axis.score},
+                           {"score_unit", row.axis.score_unit},
+                           {"limit", row.axis.limit},
+                           {"geometry", row.axis.geometry},
+                           {"values", row.axis.values},
+                           {"methods", methods},
+                           {"jumps", jumps},
+                           {"violations", violations}};
+  }
+  return axes;
+}
+
+std::string to_csv(const std::vector<StressRow>& rows) {
+  std::string text = "axis,method,value,score\n";
+  for (const StressRow& row : rows) {
+    for (const stress::Curve& curve : row.result.curves) {
+      for (const stress::Step& step : curve.steps) {
+        char line[160];
+        std::snprintf(line, sizeof line, "%s,\"%s\",%.6g,%.6g\n", row.axis.name.c_str(),
+                      curve.method.c_str(), step.value, step.score);
+        text += line;
+      }
+    }
+  }
+  return text;
+}
+
+}  // namespace ps::apps

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/output.h"
+#include "apps/report.h"
+#include "libps/scene/stress.h"
+
+namespace ps::apps {
+
+/// What an axis came to, without its pictures.
+struct StressRow {
+  stress::Axis axis;
+  stress::AxisResult result;
+};
+
+/// @brief Writes NAME.png, the curves, and NAME-before.png and NAME-after.png: all methods at the
+/// last value where ours holds and at the first where it is broken (which is left out if it never
+/// is). Then empties the result's pictures.
+void write_axis_pictures(OutputFolder& out, StressRow& row);
+
+/// @return a line for each axis: the breaking points of all methods
+std::string breaking_table(const std::vector<StressRow>& rows);
+
+/// @return breaking_table() and, for each axis, what it is, its criterion and its pictures; then
+/// where ours is not the last to break, and violations. Markdown.
+std::string stress_markdown(const std::vector<StressRow>& rows);
+
+Json to_json(const std::vector<StressRow>& rows);
+
+/// @return axis,method,value,score
+std::string to_csv(const std::vector<StressRow>& rows);
+
+}  // namespace ps::apps

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/interrupt.h"
+#include "apps/method_models.h"
+#include "apps/output.h"
+#include "apps/program.h"
+#include "apps/progress.h"
+#include "apps/stress_report.h"
+#include "libps/core/error.h"
+#include "libps/scene/stress_axes.h"
+
+namespace ps::apps {
+namespace {
+
+struct StressArguments {
+  std::string output;
+  std::vector<std::string> axes;
+  std::string size = "small", weights;
+};
+
+std::vector<stress::Axis> all_axes(const stress::SuiteOptions& options,
+                                   const stress::NetworksSource& networks) {
+  std::vector<stress::Axis> axes = stress::fusion_axes(options);
+  for (stress::Axis& axis : stress::cloud_axes(options)) axes.push_back(std::move(axis));
+  for (stress::Axis& axis : stress::photo_axes(options, networks)) axes.push_back(std::move(axis));
+  return axes;
+}
+
+std::vector<std::string> axis_names() {
+  std::vector<std::string> names;
+  for (const stress::Axis& axis : all_axes({}, {})) names.push_back(axis.name);
+  return names;
+}
+
+std::vector<stress::Axis> chosen_axes(const StressArguments& a,
+                                      const stress::NetworksSource& networks,
+                                      const Context& context) {
+  std::vector<stress::Axis> axes = all_axes(
+      a.size == "full" ? stress::full_suite(context.seed) : stress::small_suite(context.seed),
+      networks);
+  const auto unwanted = [&](const stress::Axis& axis) {
+    return !a.axes.empty() && std::find(a.axes.begin(), a.axes.end(), axis.name) == a.axes.end();
+  };
+  axes.erase(std::remove_if(axes.begin(), axes.end(), unwanted), axes.end());
+  return axes;
+}
+
+std::vector<StressRow> run_axes(const std::vector<stress::Axis>& axes, OutputFolder& out,
+                                const Context& context) {
+  std::size_t steps = 0, done = 0;
+  for (const stress::Axis& axis : axes) steps += axis.values.size() * axis.methods.size();
+  Progress progress(context, "stress", steps);
+  std::vector<StressRow> rows;
+  for (const stress::Axis& axis : axes) {
+    rows.push_back(
+        {axis, stress::run_axis(axis, context.threads, [&] { progress.update(++done); })});
+    write_axis_pictures(out, rows.back());
+  }
+  return rows;
+}
+
+void run_stress(const StressArguments& a, const CLI::App& verb, const Context& context) {
+  note_interrupts();
+  const Stopwatch total;
+  OutputFolder out(a.output);
+  std::unique_ptr<MethodModels> models;
+  const auto networks = [&] {
+    models = std::make_unique<MethodModels>(a.weights, std::vector<std::string>{"ours"}, context);
+    return models->networks();
+  };
+  const std::vector<StressRow> rows = run_axes(chosen_axes(a, networks, context), out, context);
+  Json report = {{"settings", settings_of(verb, context)}, {"axes", to_json(rows)}};
+  add_costs(report, total);
+  out.write("stress.json", [&](const auto& path) { write_json(path, report); });
+  out.write("stress.csv", [&](const auto& path) { write_text(path, to_csv(rows)); });
+  out.write("stress.md", [&](const auto& path) { write_text(path, stress_markdown(rows)); });
+  out.commit();
+  if (!context.json) print_text(breaking_table(rows));
+  std::size_t violations = 0;
+  for (const StressRow& row : rows) violations += row.result.violations.size();
+  end_run(context, report, a.output, std::to_string(rows.size()) + " axes put under stress");
+  if (violations > 0) {
+    throw Error(a.output, std::to_string(violations) + " violations, see stress.md", "none");
+  }
+}
+
+}  // namespace
+
+void add_stress(CLI::App& program, const Context& context) {
+  auto* verb = program.add_subcommand(
+      "stress",
+      "Where things break: procedural rooms with one thing going wrong at a time, from not at all "
+      "to past all use, ours beside other methods. Writes stress.md (the table of breaking "
+      "points), stress.csv, stress.json, and of each axis its curves and pictures just before and "
+      "just after ours breaks.\n"
+      "Every step is also held to what must always be: no crash, everything finite, the same bytes "
+      "on one thread and on two, nothing observed overwritten by what was invented. Exit status 1 "
+      "if any is not, after everything is written.");
+  auto a = std::make_shared<StressArguments>();
+  verb->add_option("-o,--output", a->output, "Folder")->required()->type_name("DIR");
+  verb->add_option("--axes", a->axes, "Of them all: these alone")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->type_name("NAME,...")
+      ->check(CLI::IsMember(axis_names()));
+  verb->add_option("--size", a->size, "small = minutes, full = a night")
+      ->type_name("SIZE")
+      ->check(CLI::IsMember({"small", "full"}));
+  verb->add_option("--weights", a->weights,
+                   "Folder of weights; empty = what comes with the program")
+      ->type_name("DIR");
+  verb->callback([a, verb, &context] { run_stress(*a, *verb, context); });
+}
+
+}  // namespace ps::apps

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/scene/room_view.h"
+
+#include "libps/rooms/shot.h"
+
+namespace ps {
+namespace {
+
+using Rows = Eigen::Matrix<float, 3, 4, Eigen::RowMajor>;
+
+}  // namespace
+
+Intrinsics room_lens(const rooms::Camera& c) { return {c.width, c.height, c.fx, c.fy, c.cx, c.cy}; }
+
+Pose room_pose(const rooms::Camera& camera) {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  matrix.topRows<3>() = Eigen::Map<const Rows>(camera.world_from_cam.data()).cast<double>();
+  return checked_pose(matrix, "room camera");
+}
+
+rooms::Camera room_camera(const Intrinsics& lens, const Pose& world_from_cam) {
+  rooms::Camera camera;
+  camera.width = lens.width;
+  camera.height = lens.height;
+  camera.fx = static_cast<float>(lens.fx);
+  camera.fy = static_cast<float>(lens.fy);
+  camera.cx = static_cast<float>(lens.cx);
+  camera.cy = static_cast<float>(lens.cy);
+  Eigen::Map<Rows>(camera.world_from_cam.data()) =
+      world_from_cam.matrix().topRows<3>().cast<float>();
+  return camera;
+}
+
+View shoot_view(const rooms::Room& room, const rooms::Camera& camera) {
+  rooms::Shot shot = rooms::shoot(room, camera);
+  View view;
+  view.color =
+      Image(shot.height, shot.width, reinterpret_cast<cv::Vec3f*>(shot.color.data())).clone();
+  view.depth = Depth(shot.height, shot.width, shot.depth.data()).clone();
+  view.intrinsics = room_lens(camera);
+  view.world_from_cam = room_pose(camera);
+  return view;
+}
+
+}  // namespace ps

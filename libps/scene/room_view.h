@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "libps/geometry/view.h"
+#include "libps/rooms/camera.h"
+
+namespace ps {
+
+/// @return the lens of a camera in a procedural room
+Intrinsics room_lens(const rooms::Camera& camera);
+
+/// @return its pose; throws ps::Error when it is no rigid transform
+Pose room_pose(const rooms::Camera& camera);
+
+/// @return the same lens elsewhere
+rooms::Camera room_camera(const Intrinsics& lens, const Pose& world_from_cam);
+
+/// @brief What a camera in a procedural room sees: exact depth, 0 outside of windows. Throws
+/// ps::Error as rooms::shoot() and room_pose() do.
+View shoot_view(const rooms::Room& room, const rooms::Camera& camera);
+
+}  // namespace ps

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/scene/frame_study.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "libps/core/error.h"
+#include "libps/core/parallel.h"
+#include "tests/support/box_world.h"
+
+namespace ps {
+namespace {
+
+const Intrinsics kCamera{100, 75, 80, 80, 49.5, 37};
+
+std::vector<View> frames() {
+  std::vector<View> views;
+  for (const Pose& pose : box_world_walk(10)) views.push_back(box_world_view(kCamera, pose));
+  return views;
+}
+
+ViewSource source_of(const std::vector<View>& views) {
+  return {views.size(), [&views](std::size_t i) { return views[i]; }};
+}
+
+TEST(FrameStudy, finds_nothing_wrong_with_exact_frames) {
+  FrameStudyOptions options;
+  options.scales = true;
+  const std::vector<View> views = frames();
+  const FrameStudy study = study_frames(source_of(views), options);
+  EXPECT_LT(study.spread, .007) << "so that the tolerance stays";
+  for (const FrameWord& word : study.words) {
+    EXPECT_FALSE(word.refused);
+    EXPECT_LT(word.contradicted, .02);
+    EXPECT_NEAR(word.scale, 1, 5e-3);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(word.gain[c], 1, .02);
+  }
+}
+
+TEST(FrameStudy, gains_undo_exposures_and_heeding_applies_them) {
+  const std::vector<View> exact = frames();
+  std::vector<View> views = frames();
+  for (std::size_t i = 0; i < views.size(); ++i) views[i].color *= i % 2 == 0 ? .8 : 1 / .8;
+  const FrameStudy study = study_frames(source_of(views));
+  const std::vector<FrameWord>& words = study.words;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    EXPECT_NEAR(words[i].gain[1], i % 2 == 0 ? 1 / .8 : .8, .05) << i;
+  }
+  const View heeded = heeding(source_of(views), study).load(3);
+  EXPECT_LT(cv::norm(heeded.color, exact[3].color, cv::NORM_L1) /
+                static_cast<double>(3 * exact[3].color.total()),
+            .02);
+  EXPECT_NEAR(views[3].color(10, 10)[0], exact[3].color(10, 10)[0] / .8, 1e-6)
+      << "the source's own frame stays";
+}
+
+TEST(FrameStudy, scales_undo_factors_of_depth) {
+  std::vector<View> views = frames();
+  for (std::size_t i = 0; i < views.size(); ++i) views[i].depth *= i % 2 == 0 ? 1.05 : 1 / 1.05;
+  FrameStudyOptions options;
+  options.scales = true;
+  const FrameStudy study = study_frames(source_of(views), options);
+  const std::vector<FrameWord>& words = study.words;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    EXPECT_NEAR(words[i].scale, i % 2 == 0 ? 1 / 1.05 : 1.05, .015) << i;
+  }
+}
+
+TEST(FrameStudy, a_lost_frame_is_refused_and_no_other) {
+  std::vector<View> views = frames();
+  views[0].world_from_cam.translation().z() -= .8;  // even where it is the first
+  views[0].world_from_cam.rotate(Eigen::AngleAxisd(.5, Eigen::Vector3d::UnitY()));
+  const FrameStudy study = study_frames(source_of(views));
+  const std::vector<FrameWord>& words = study.words;
+  EXPECT_TRUE(words[0].refused) << words[0].contradicted;
+  for (std::size_t i = 1; i < words.size(); ++i) EXPECT_FALSE(words[i].refused) << i;
+  const ViewSource heeded = heeding(source_of(views), study);
+  EXPECT_TRUE(heeded.load(0).depth.empty());
+  EXPECT_FALSE(heeded.load(1).depth.empty());
+}
+
+TEST(FrameStudy, spread_is_that_of_noise_and_widens_the_tolerance) {
+  std::vector<View> views = frames();
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    for (int y = 0; y < kCamera.height; ++y) {
+      for (int x = 0; x < kCamera.width; ++x) {
+        const double any = std::sin(12.9898 * x + 78.233 * y + 3.7 * static_cast<double>(i));
+        views[i].depth(y, x) *= static_cast<float>(1 + .06 * any);
+      }
+    }
+  }
+  const FrameStudy study = study_frames(source_of(views));
+  EXPECT_GT(study.spread, .02);
+  EXPECT_LT(study.spread, .1);
+  EXPECT_EQ(heeding(FuseOptions(), study).cloud.tolerance_relative, 2 * study.spread);
+  EXPECT_EQ(heeding(FuseOptions(), FrameStudy()).cloud.tolerance_relative,
+            FuseOptions().cloud.tolerance_relative);
+}
+
+TEST(FrameStudy, words_do_not_depend_on_threads) {
+  const std::vector<View> views = frames();
+  FrameStudyOptions options;
+  options.scales = true;
+  set_threads(1);
+  const std::vector<FrameWord> one = study_frames(source_of(views), options).words;
+  set_threads(3);
+  const std::vector<FrameWord> three = study_frames(source_of(views), options).words;
+  set_threads(0);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].gain, three[i].gain);
+    EXPECT_EQ(one[i].scale, three[i].scale);
+    EXPECT_EQ(one[i].contradicted, three[i].contradicted);
+  }
+}
+
+TEST(FrameStudy, takes_empty_frames_and_none_at_all) {
+  EXPECT_TRUE(study_frames(ViewSource{}).words.empty());
+  EXPECT_EQ(study_frames(ViewSource{}).spread, 0);
+  std::vector<View> views = frames();
+  views.resize(3);
+  views[1] = View();
+  const FrameStudy study = study_frames(source_of(views));
+  const std::vector<FrameWord>& words = study.words;
+  EXPECT_EQ(words[1].gain, cv::Vec3f(1, 1, 1));
+  EXPECT_FALSE(words[1].refused);
+  EXPECT_TRUE(heeding(source_of(views), study).load(1).depth.empty());
+}
+
+TEST(FrameStudy, unsound_options_and_words_are_refused) {
+  const std::vector<View> views = frames();
+  FrameStudyOptions options;
+  options.width = 1;
+  EXPECT_THROW(study_frames(source_of(views), options), Error);
+  EXPECT_THROW(study_frames(ViewSource{2, {}}), Error);
+  EXPECT_THROW(heeding(source_of(views), FrameStudy()), Error);
+}
+
+}  // namespace
+}  // namespace ps
