@@ -8,7 +8,7 @@
 #include <set>
 
 #include "apps/chart_axis.h"
-#include "io/atomic_file.h"
+#include "apps/report.h"
 #include "io/photo.h"
 #include "libps/core/error.h"
 
@@ -288,9 +288,7 @@ void write_chart_png(const std::filesystem::path& path, const ChartPicture& pict
 }
 
 void write_chart_svg(const std::filesystem::path& path, const ChartPicture& picture) {
-  AtomicFile file(path);
-  file.write("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + svg_of(drawing_of(picture)));
-  file.commit();
+  write_text(path, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + svg_of(drawing_of(picture)));
 }
 
 }  // namespace ps::apps

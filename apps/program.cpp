@@ -72,6 +72,7 @@ int run(int argc, char** argv) {
   add_weights(program, context);
   add_train(program, context);
   add_eval(program, context);
+  add_chart(program, context);
   program.require_subcommand(0, 1);
   try {
     program.parse(argc, argv);

@@ -35,5 +35,6 @@ void add_probe(CLI::App& program, const Context& context);
 void add_weights(CLI::App& program, const Context& context);
 void add_train(CLI::App& program, const Context& context);
 void add_eval(CLI::App& program, const Context& context);
+void add_chart(CLI::App& program, const Context& context);
 
 }  // namespace ps::apps

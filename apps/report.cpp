@@ -89,10 +89,14 @@ Json summary_of(const Cloud& cloud) {
   return json;
 }
 
-void write_json(const std::filesystem::path& path, const Json& json) {
+void write_text(const std::filesystem::path& path, const std::string& text) {
   AtomicFile file(path);
-  file.write(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  file.write(text);
   file.commit();
+}
+
+void write_json(const std::filesystem::path& path, const Json& json) {
+  write_text(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 void print_report(const Context& context, const Json& report) {

@@ -26,6 +26,9 @@ Json to_json(const Intrinsics& intrinsics);
 /// @return points, how many of them were observed and outpainted, and the box they fill, metres
 Json summary_of(const Cloud& cloud);
 
+/// @brief Writes a file, which appears whole or not at all. Throws ps::Error.
+void write_text(const std::filesystem::path& path, const std::string& text);
+
 /// @brief Writes indented JSON; the file appears whole or not at all. Throws ps::Error.
 void write_json(const std::filesystem::path& path, const Json& json);
 

@@ -16,6 +16,7 @@ struct KnobSample {
   std::string name;
   int group = 0;             ///< samples of one group are alike (bootstrap_mean())
   View input, target;        ///< with depth
+  Depth whole_depth;         ///< the input's, holes filled; empty = it has none
   std::vector<View> others;  ///< further ones, with depth; may be empty
 };
 
@@ -39,13 +40,13 @@ struct KnobSetting {
 
 /// @brief Something that can be set, to have more accuracy or less time.
 struct Knob {
-  std::string name;                   ///< "radius"
-  std::string what;                   ///< in a sentence
-  std::string timed;                  ///< what the seconds are of
-  std::vector<ScoreColumn> scores;    ///< the first one is the accuracy: the more the better
-  std::vector<KnobSetting> settings;  ///< one is the default
-  int repeats = 1;                    ///< of each setting; the least time counts
-  std::function<KnobBench(const KnobSample&)> prepare;
+  std::string name;                        ///< "radius"
+  std::string what;                        ///< in a sentence
+  std::string timed = {};                  ///< what the seconds are of
+  std::vector<ScoreColumn> scores = {};    ///< the first one is the accuracy: the more the better
+  std::vector<KnobSetting> settings = {};  ///< one is the default
+  int repeats = 1;                         ///< of each setting; the least time counts
+  std::function<KnobBench(const KnobSample&)> prepare = {};
 };
 
 /// Pictures of one sample.

@@ -26,7 +26,7 @@ Knob counted(std::vector<std::size_t>* order) {
   return knob;
 }
 
-KnobSample sample(std::size_t i) { return {std::to_string(i), static_cast<int>(i), {}, {}, {}}; }
+KnobSample sample(std::size_t i) { return {std::to_string(i), static_cast<int>(i), {}, {}, {}, {}}; }
 
 TEST(Knob, settings_take_turns_after_a_warm_up_and_the_least_time_counts) {
   std::vector<std::size_t> order;
