@@ -19,6 +19,8 @@ namespace {
 constexpr unsigned kColors[] = {0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9};
 constexpr unsigned kInk = 0x222222, kGrid = 0xe4e4e4;
 constexpr double kWords = 13, kTitle = 16, kPng = 1.5, kRing = 8;
+constexpr double kAbove = 62, kBelow = 52;  ///< the plot, pixels
+constexpr int kMostX = 9, kMostY = 8;       ///< ticks
 
 void check(const ChartPicture& picture) {
   if (picture.width < 200 || picture.height < 150) {
@@ -80,9 +82,9 @@ class Layout {
   };
 
   const ChartPicture& picture_;
+  const Axis y_;
   const cv::Rect2d plot_;  ///< pixels
-  Range x_range_, y_range_;
-  Axis x_, y_;
+  const Axis x_;
   Drawing drawing_;
   std::vector<Label> labels_;
   std::vector<cv::Rect2d> taken_;  ///< by words and dots
@@ -108,13 +110,19 @@ Range y_range_of(const ChartPicture& picture) {
   return range;
 }
 
+/// Room for the words at the ticks and for the axis's name.
+double left_of(const Axis& y) {
+  double widest = 0;
+  for (const Tick& tick : y.ticks(kMostY)) widest = std::max(widest, width_of(tick.words, kWords));
+  return 36 + widest;
+}
+
 Layout::Layout(const ChartPicture& picture)
     : picture_(picture),
-      plot_(cv::Point2d(70, 62), cv::Point2d(picture.width - 20, picture.height - 52)),
-      x_range_(x_range_of(picture)),
-      y_range_(y_range_of(picture)),
-      x_(x_range_.axis(picture.log_x, plot_.x, plot_.x + plot_.width)),
-      y_(y_range_.axis(false, plot_.y + plot_.height, plot_.y)) {
+      y_(y_range_of(picture).axis(false, picture.height - kBelow, kAbove)),
+      plot_(cv::Point2d(left_of(y_), kAbove),
+            cv::Point2d(picture.width - 20, picture.height - kBelow)),
+      x_(x_range_of(picture).axis(picture.log_x, plot_.x, plot_.x + plot_.width)) {
   drawing_.width = picture.width;
   drawing_.height = picture.height;
 }
@@ -128,12 +136,12 @@ void Layout::add_axes() {
   const double left = plot_.x, right = plot_.x + plot_.width, top = plot_.y,
                bottom = plot_.y + plot_.height;
   using Align = Drawing::Align;
-  for (const Tick& tick : x_.ticks(9)) {
+  for (const Tick& tick : x_.ticks(kMostX)) {
     const double x = x_.at(tick.value);
     line({{x, top}, {x, bottom}}, kGrid, 1);
     drawing_.texts.push_back({{x, bottom + 18}, tick.words, kWords, Align::middle});
   }
-  for (const Tick& tick : y_.ticks(8)) {
+  for (const Tick& tick : y_.ticks(kMostY)) {
     const double y = y_.at(tick.value);
     line({{left, y}, {right, y}}, kGrid, 1);
     drawing_.texts.push_back({{left - 7, y + 4.5}, tick.words, kWords, Align::end});

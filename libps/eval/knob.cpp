@@ -2,12 +2,14 @@
 #include "libps/eval/knob.h"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 
 #include "libps/core/error.h"
 
 namespace ps {
 namespace {
+
+constexpr double kClock = 1e-9;  ///< seconds that the clock can tell apart
 
 void check(const Knob& knob) {
   const auto defaults =
@@ -74,6 +76,22 @@ void add(const Knob& knob, const KnobSample& sample, const std::vector<KnobTrial
   }
 }
 
+/// Geometric means: what slows the machine down multiplies times.
+std::vector<Interval> seconds_of(const ScoreTable& table, const BootstrapOptions& options) {
+  ScoreTable logarithms({table.columns().front()});
+  for (ScoreRow row : table.rows()) {
+    row.values = {std::log(std::max(row.values.front(), kClock))};
+    logarithms.add(std::move(row));
+  }
+  std::vector<Interval> seconds = within_samples(logarithms, 0, options);
+  for (Interval& interval : seconds) {
+    for (double* value : {&interval.value, &interval.low, &interval.high}) {
+      *value = std::exp(*value);
+    }
+  }
+  return seconds;
+}
+
 }  // namespace
 
 std::vector<KnobResult> measure(const std::vector<Knob>& knobs, std::size_t count,
@@ -108,7 +126,7 @@ std::vector<TradeoffPoint> points_of(const Knob& knob, const ScoreTable& table,
   check(knob);
   const auto standard = std::find_if(knob.settings.begin(), knob.settings.end(),
                                      [](const KnobSetting& s) { return s.is_default; });
-  const std::vector<Interval> seconds = within_samples(table, 0, options);
+  const std::vector<Interval> seconds = seconds_of(table, options);
   const std::vector<Interval> accuracy = within_samples(table, 1, options);
   std::vector<TradeoffPoint> points;
   for (const KnobSetting& setting : knob.settings) {

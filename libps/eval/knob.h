@@ -77,8 +77,8 @@ std::vector<KnobResult> measure(const std::vector<Knob>& knobs, std::size_t coun
                                 const std::function<KnobSample(std::size_t)>& load,
                                 const MeasureOptions& options = {});
 
-/// @brief Points of the settings, in their order: within-sample intervals of seconds and accuracy,
-/// and changes against the default.
+/// @brief Points of the settings, in their order: within-sample intervals of seconds, which are
+/// geometric means, and of accuracy, and changes against the default.
 std::vector<TradeoffPoint> points_of(const Knob& knob, const ScoreTable& table,
                                      const BootstrapOptions& options = {});
 

@@ -68,8 +68,8 @@ KnobSample room_sample(std::uint64_t seed, int side) {
     if (cameras.empty()) continue;
     std::vector<View> views(cameras.size());
     parallel_for(views.size(), [&](std::size_t i) { views[i] = view_of(room, cameras[i]); });
-    return {
-        "room-" + std::to_string(seed), 0, views[0], views[1], {}, {views.begin() + 2, views.end()}};
+    return {"room-" + std::to_string(seed),  0, views[0], views[1], {},
+            {views.begin() + 2, views.end()}};
   }
   throw Error("room " + std::to_string(seed), "no two views of it are a pair", "another seed");
 }

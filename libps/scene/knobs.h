@@ -37,8 +37,8 @@ Knob budget_knob();            ///< points that are kept (budget.h), planned for
 Knob image_size_knob();        ///< of the splatted picture, which is then resized to the target's
 
 /// @brief How the refiner computes, on what it is given of the target: splats of the input. PSNR of
-/// its output against the mean of what the same network, mirrored across, down and both, computes
-/// directly in single precision: sums in other orders, so exact to better than those.
+/// its output against what the same network, transposed, computes directly in single precision:
+/// sums in another order. So the most that can be told apart is what rounding of both differs by.
 /// @param refiner  its weights
 Knob arithmetic_knob(const nn::Weights& refiner);
 

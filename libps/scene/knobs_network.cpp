@@ -18,31 +18,28 @@
 namespace ps {
 namespace {
 
-/// Ways to mirror a picture, as cv::flip() names them.
-constexpr int kAcross = 1, kDown = 0, kBoth = -1;
-
-/// @param values  of kernels of height x width, one after another
-void mirror(std::vector<float>& values, std::size_t height, std::size_t width, int way) {
-  for (std::size_t k = 0; k + height * width <= values.size(); k += height * width) {
-    cv::Mat1f kernel(static_cast<int>(height), static_cast<int>(width), values.data() + k);
-    cv::Mat1f mirrored;
-    cv::flip(kernel, mirrored, way);
-    mirrored.copyTo(kernel);
+/// @param values  of square kernels, one after another
+void transpose(std::vector<float>& values, std::size_t side) {
+  for (std::size_t k = 0; k + side * side <= values.size(); k += side * side) {
+    for (std::size_t y = 0; y < side; ++y) {
+      for (std::size_t x = 0; x < y; ++x) {
+        std::swap(values[k + y * side + x], values[k + x * side + y]);
+      }
+    }
   }
 }
 
-/// The network that makes of a mirrored picture the mirrored output.
-nn::Weights mirrored(const nn::Weights& weights, int way) {
+/// The network that makes of a transposed picture the transposed output.
+nn::Weights transposed(const nn::Weights& weights) {
   std::map<std::string, nn::WeightTensor> tensors = weights.tensors();
   for (auto& [name, tensor] : tensors) {
-    if (tensor.shape.size() != 4 || tensor.values.empty()) continue;
-    const std::size_t height = tensor.shape[2], width = tensor.shape[3];
-    mirror(tensor.values, height, width, way);
+    if (tensor.shape.size() != 4 || tensor.shape[2] != tensor.shape[3]) continue;
+    transpose(tensor.values, tensor.shape[2]);
     // Spectral norms multiply the kernels, in rows, by this vector.
     const std::size_t end = name.rfind("_orig");
     if (end == std::string::npos) continue;
     const auto vector = tensors.find(name.substr(0, end) + "_v");
-    if (vector != tensors.end()) mirror(vector->second.values, height, width, way);
+    if (vector != tensors.end()) transpose(vector->second.values, tensor.shape[2]);
   }
   return {weights.name(), std::move(tensors)};
 }
@@ -85,30 +82,22 @@ nn::Tensor refined(const models::Refiner& refiner, const RefinerInput& input,
   return output;
 }
 
-/// The mean of three direct forwards of mirrored networks.
-cv::Mat nearly_exact(const nn::Weights& weights, const RefinerInput& input) {
-  models::ModelOptions direct;
-  direct.method = nn::Method::direct;
-  nn::Workspace workspace;
-  cv::Mat sum;
-  for (const int way : {kAcross, kDown, kBoth}) {
-    const models::Refiner refiner(mirrored(weights, way), direct);
-    RefinerInput turned = {nn::Tensor(input.picture.shape()), input.noise};
-    cv::flip(as_mat(input.picture), as_mat(turned.picture), way);
-    const nn::Tensor output = refined(refiner, turned, workspace);
-    cv::Mat back;
-    cv::flip(as_mat(output), back, way);
-    back.convertTo(back, CV_64F);
-    sum = sum.empty() ? back : cv::Mat(sum + back);
-  }
-  return sum / 3;
+/// What the transposed network makes directly.
+cv::Mat nearly_exact(const models::Refiner& of_transposed, const RefinerInput& input,
+                     nn::Workspace& workspace) {
+  const nn::Shape& shape = input.picture.shape();
+  RefinerInput turned = {nn::Tensor({1, shape.width, shape.height, shape.channels}), input.noise};
+  cv::Mat to = as_mat(turned.picture);
+  cv::transpose(as_mat(input.picture), to);
+  const nn::Tensor output = refined(of_transposed, turned, workspace);
+  cv::Mat exact;
+  cv::transpose(as_mat(output), exact);
+  return exact;
 }
 
 /// dB; outputs reach from -1 to 1.
 double psnr_of(const nn::Tensor& output, const cv::Mat& exact) {
-  cv::Mat values;
-  as_mat(output).convertTo(values, CV_64F);
-  const double error = cv::norm(values, exact, cv::NORM_L2);
+  const double error = cv::norm(as_mat(output), exact, cv::NORM_L2);
   const double root_mean_square =
       error / std::sqrt(static_cast<double>(exact.total()) * exact.channels());
   return 20 * std::log10(2 / root_mean_square);
@@ -148,18 +137,17 @@ Knob arithmetic_knob(const nn::Weights& weights) {
   models::ModelOptions direct, automatic, half;
   direct.method = nn::Method::direct;
   half.storage = nn::Storage::bf16;
-  const auto kept = std::make_shared<nn::Weights>(weights);
   const auto refiners = std::make_shared<std::vector<models::Refiner>>();
   for (const models::ModelOptions& options : {direct, automatic, half}) {
     refiners->emplace_back(weights, options);
   }
-  knob.prepare = [refiners, kept](const KnobSample& sample) {
-    const auto input =
-        std::make_shared<RefinerInput>(refiner_input(sample, refiners->front().noise_count()));
-    const cv::Mat exact = nearly_exact(*kept, *input);
+  const auto other = std::make_shared<models::Refiner>(transposed(weights), direct);
+  const auto workspace = std::make_shared<nn::Workspace>();
+  knob.prepare = [=](const KnobSample& sample) {
+    const auto input = std::make_shared<RefinerInput>(refiner_input(sample, other->noise_count()));
+    const cv::Mat exact = nearly_exact(*other, *input, *workspace);
     cv::Mat truth;
     exact.convertTo(truth, CV_32F, 0.5, 0.5);
-    const auto workspace = std::make_shared<nn::Workspace>();
     return KnobBench{
         Image(truth), [=](std::size_t s) {
           KnobTrial trial;

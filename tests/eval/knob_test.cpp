@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 
 #include "libps/core/error.h"
@@ -58,6 +59,7 @@ TEST(Knob, points_are_in_the_order_of_settings_with_changes_against_the_default)
   const auto points = points_of(knob, measure({knob}, 2, sample)[0].table);
   ASSERT_EQ(points.size(), 2u);
   EXPECT_EQ(points[0].setting, "small");
+  EXPECT_NEAR(points[0].seconds.value, std::sqrt(7.0 * 8), 1e-9);
   EXPECT_EQ(points[0].accuracy.value, 0.5);
   EXPECT_EQ(points[0].change.value, -10);
   EXPECT_TRUE(points[1].is_default);
