@@ -21,7 +21,7 @@ constexpr char kHead[] = R"html(<!doctype html>
 <style>
   body { margin: 0 auto; padding: 1rem; max-width: 80rem; color: #222; font: 1rem sans-serif; }
   .measured { display: flex; flex-wrap: wrap; gap: 1rem; align-items: center; }
-  .measured svg { max-width: 100%; height: auto; }
+  .measured svg { flex: 1 1 30rem; max-width: 45rem; min-width: 0; height: auto; }
   table { border-collapse: collapse; font-size: .85rem; }
   th, td { padding: .2rem .5rem; border-bottom: 1px solid #ddd; text-align: right; }
   th:first-child, td:first-child { text-align: left; }

@@ -12,6 +12,9 @@ namespace {
 /// Loads a frame that must have depth.
 View load_frame(const PosedFrames& frames, std::size_t i) {
   View view = frames.load(i);
+  if (view.depth.empty() || cv::countNonZero(view.depth) == 0) {
+    throw Error(frames.frames[i].name, "has no depth", "frames with true depth");
+  }
   check(view, frames.frames[i].name);
   return view;
 }

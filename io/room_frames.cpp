@@ -7,7 +7,7 @@
 #include "libps/core/error.h"
 #include "libps/core/parallel.h"
 #include "libps/core/random.h"
-#include "libps/rooms/shot.h"
+#include "libps/scene/room_view.h"
 
 namespace ps {
 namespace {
@@ -48,27 +48,10 @@ rooms::Camera camera_of(const rooms::Room& room, std::uint64_t room_seed, std::s
   return rooms::moved(room, first, key(room_seed, view), kMostTurned, kMostMoved);
 }
 
-Intrinsics lens_of(const rooms::Camera& c) { return {c.width, c.height, c.fx, c.fy, c.cx, c.cy}; }
-
-Pose pose_of(const rooms::Camera& camera) {
-  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  for (int i = 0; i < 12; ++i) {
-    matrix(i / 4, i % 4) = camera.world_from_cam[static_cast<std::size_t>(i)];
-  }
-  return checked_pose(matrix, "room camera");
-}
-
 View load(const RoomSource& source, std::size_t i) {
   const rooms::Room room(source.room_seed(i));
   const rooms::Camera camera = camera_of(room, source.room_seed(i), i % kViews);
-  rooms::Shot shot = rooms::shoot(room, camera);
-  View view;
-  view.color =
-      Image(shot.height, shot.width, reinterpret_cast<cv::Vec3f*>(shot.color.data())).clone();
-  view.depth = Depth(shot.height, shot.width, shot.depth.data()).clone();
-  view.intrinsics = lens_of(camera);
-  view.world_from_cam = pose_of(camera);
-  return view;
+  return view_of(rooms::shoot(room, camera), camera);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "libps/core/error.h"
 #include "libps/core/parallel.h"
 #include "libps/core/random.h"
-#include "libps/rooms/shot.h"
+#include "libps/scene/room_view.h"
 
 namespace ps {
 namespace {
@@ -17,25 +17,6 @@ constexpr std::uint32_t kPurpose = 0x6b6e6f62;  ///< of the random numbers
 std::uint64_t key(std::uint64_t seed, std::uint32_t round, std::uint32_t view) {
   const auto bits = random_bits(seed, {round, view, kPurpose, 0});
   return static_cast<std::uint64_t>(bits[0]) << 32 | bits[1];
-}
-
-Pose pose_of(const rooms::Camera& camera) {
-  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  for (int i = 0; i < 12; ++i) {
-    matrix(i / 4, i % 4) = camera.world_from_cam[static_cast<std::size_t>(i)];
-  }
-  return checked_pose(matrix, "room camera");
-}
-
-View view_of(const rooms::Room& room, const rooms::Camera& camera) {
-  rooms::Shot shot = rooms::shoot(room, camera);
-  View view;
-  view.color =
-      Image(shot.height, shot.width, reinterpret_cast<cv::Vec3f*>(shot.color.data())).clone();
-  view.depth = Depth(shot.height, shot.width, shot.depth.data()).clone();
-  view.intrinsics = {camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy};
-  view.world_from_cam = pose_of(camera);
-  return view;
 }
 
 /// Cameras of one place: the pair, then the others. Empty where they are no pair.
@@ -67,7 +48,9 @@ KnobSample room_sample(std::uint64_t seed, int side) {
     const std::vector<rooms::Camera> cameras = cameras_of(room, seed, round, side);
     if (cameras.empty()) continue;
     std::vector<View> views(cameras.size());
-    parallel_for(views.size(), [&](std::size_t i) { views[i] = view_of(room, cameras[i]); });
+    parallel_for(views.size(), [&](std::size_t i) {
+      views[i] = view_of(rooms::shoot(room, cameras[i]), cameras[i]);
+    });
     return {"room-" + std::to_string(seed),  0, views[0], views[1], {},
             {views.begin() + 2, views.end()}};
   }

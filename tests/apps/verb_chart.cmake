@@ -42,7 +42,7 @@ app_test(chart_scores_do_not_depend_on_threads_but_on_the_seed [=[
   works --threads 1 chart -o a --views 1 --side 64 --knobs radius
   works --threads 3 chart -o b --views 1 --side 64 --knobs radius
   works --seed 1 chart -o c --views 1 --side 64 --knobs radius
-  scores() { cut -d, -f1,2,9- $1/chart.csv; }
+  scores() { cut -d, -f1-3,10- $1/chart.csv; }
   is "$(scores a)" = "$(scores b)"
   is "$(scores a)" != "$(scores c)"]=])
 app_test(chart_takes_frames_and_refuses_those_without_pairs_or_depth [=[
@@ -50,7 +50,9 @@ app_test(chart_takes_frames_and_refuses_those_without_pairs_or_depth [=[
   says '^c: 1 knobs on 2 pairs'
   fails 1 'no two frames are a pair' chart rooms:5:1 -o d --knobs radius
   fails 1 'absent' chart absent -o d --knobs radius
-  fails 1 'no depth|depth' chart $S/estate -o d --knobs radius]=])
+  cp -r $S/estate e
+  sed -i '$s/ 1 0 0 0 0 1 0 0 0 0 1 0$/ 0.8660254 0 0.5 0 0 1 0 0 -0.5 0 0.8660254 0/' e/clip.txt
+  fails 1 'has no depth; expected' chart e -o d --knobs radius]=])
 app_test(chart_names_its_knobs_and_sizes [=[
   fails 2 'knobs.*samples.*selection.*radius.*points-per-pixel.*budget.*image-size.*arithmetic.*width' chart -o c --knobs speed
   fails 2 'size.*small' chart -o c --size huge
