@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <system_error>
+#include <tuple>
 
 #include "apps/interrupt.h"
 #include "apps/scene_input.h"
@@ -90,7 +91,6 @@ OutpaintKnobOptions ChartKnobs::outpainting(const ChartKnobOptions& options,
     return true;
   };
   if (lpips_) knob.perceptual = lpips_distance(*lpips_);
-  knob.selection_samples = options.selection_samples;
   return knob;
 }
 

@@ -17,10 +17,9 @@ const std::vector<std::string>& knob_names();
 
 struct ChartKnobOptions {
   std::vector<std::string> names = knob_names();
-  std::string weights;         ///< as SceneModels takes them
-  std::string widths;          ///< a folder of depth-*.safetensors; empty = none
-  std::string lpips;           ///< weights; empty = none
-  int selection_samples = 16;  ///< of the knob `selection`
+  std::string weights;  ///< as SceneModels takes them
+  std::string widths;   ///< a folder of depth-*.safetensors; empty = none
+  std::string lpips;    ///< weights; empty = none
 };
 
 /// @brief The knobs of a chart, with the networks that they need.

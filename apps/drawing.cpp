@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/drawing.h"
 
+#include <cmath>
 #include <cstdio>
 
 #include "apps/part.h"

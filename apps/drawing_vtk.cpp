@@ -4,7 +4,6 @@
 #include <vtkContextActor.h>
 #include <vtkContextItem.h>
 #include <vtkContextScene.h>
-#include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkPen.h>

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -32,9 +31,9 @@ struct ChartArguments {
 
 /// What --size stands for.
 struct ChartSize {
-  int views, side, selection_samples;
+  int views, side;
 };
-constexpr ChartSize kSmall = {6, 384, 16}, kFull = {24, 512, 50};
+constexpr ChartSize kSmall = {6, 384}, kFull = {24, 512};
 
 ChartSize size_of(const ChartArguments& a) {
   ChartSize size = a.size == "full" ? kFull : kSmall;
@@ -96,9 +95,7 @@ void run_chart(const ChartArguments& a, const CLI::App& verb, const Context& con
   note_interrupts();
   const Stopwatch total;
   OutputFolder folder(a.output);
-  ChartKnobOptions options = a.knobs;
-  options.selection_samples = size.selection_samples;
-  const ChartKnobs knobs(options, context);
+  const ChartKnobs knobs(a.knobs, context);
   const auto views = static_cast<std::size_t>(size.views);
   const ChartSamples samples = a.frames.data.empty() ? room_samples(views, size.side, context)
                                                      : frame_samples(a.frames, views, context);
