@@ -17,7 +17,7 @@ namespace {
 
 /// Okabe and Ito's colours, which colour-blind people can tell apart.
 constexpr unsigned kColors[] = {0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9};
-constexpr unsigned kInk = 0x222222, kGrid = 0xe4e4e4;
+constexpr unsigned kInk = 0x222222, kGrid = 0xe4e4e4, kLeader = 0x888888;
 constexpr double kWords = 13, kTitle = 16, kPng = 1.5, kRing = 8;
 constexpr double kAbove = 62, kBelow = 52;  ///< the plot, pixels
 constexpr int kMostX = 9, kMostY = 8;       ///< ticks
@@ -69,6 +69,7 @@ class Layout {
   void add_bars(const Curve& curve, std::size_t i, unsigned color);
   void add_marks();
   void add_labels();
+  void add_leader(const cv::Point2d& dot, const cv::Rect2d& words);
   void add_legend();
   std::optional<cv::Point2d> place(double x, double y) const;
   void line(std::vector<cv::Point2d> points, unsigned color, double width, bool dashed = false) {
@@ -223,6 +224,14 @@ double Layout::hidden_by(const cv::Rect2d& words) const {
   return cost;
 }
 
+/// A thin line to words that stand far from their dot.
+void Layout::add_leader(const cv::Point2d& dot, const cv::Rect2d& words) {
+  constexpr double kNear = 14;
+  const cv::Point2d end(std::clamp(dot.x, words.x, words.x + words.width),
+                        std::clamp(dot.y, words.y, words.y + words.height));
+  if (std::hypot(end.x - dot.x, end.y - dot.y) > kNear) line({dot, end}, kLeader, 0.8);
+}
+
 void Layout::add_labels() {
   for (const Label& label : labels_) {
     const double width = width_of(label.words, kWords) + 2, height = kWords;
@@ -244,6 +253,7 @@ void Layout::add_labels() {
       }
     }
     taken_.push_back(*best);
+    add_leader(label.at, *best);
     drawing_.texts.push_back({{best->x + 1, best->y + height - 2}, label.words, kWords});
   }
 }
