@@ -153,7 +153,7 @@ Json machine_report() {
   return {{"processor", processor()},
           {"cores", std::thread::hardware_concurrency()},
           {"threads", threads()},
-          {"load_before", known ? Json(load) : Json()}};
+          {"load_before", known ? Json(std::round(100 * load) / 100) : Json()}};
 }
 
 Image grid_of(const std::vector<Image>& pictures, int columns) {

@@ -84,9 +84,9 @@ void write_charts(OutputFolder& folder, const std::vector<KnobChart>& charts,
 }
 
 std::string about_line(const Json& machine, const ChartSamples& samples, const Context& context) {
-  return "pixelsynth " PS_VERSION ", " + std::to_string(samples.count) + " pairs of " +
-         samples.report["data"].get<std::string>() + ", seed " + std::to_string(context.seed) +
-         ", " + std::to_string(machine["threads"].get<int>()) + " threads of " +
+  return "pixelsynth " PS_VERSION ", data " + samples.report["data"].get<std::string>() +
+         ", pairs of views " + std::to_string(samples.count) + ", seed " +
+         std::to_string(context.seed) + ", threads " + machine["threads"].dump() + ", " +
          machine["processor"].get<std::string>() + ", load before " + machine["load_before"].dump();
 }
 
