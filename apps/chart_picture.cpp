@@ -226,7 +226,7 @@ double Layout::hidden_by(const cv::Rect2d& words) const {
 
 /// A thin line to words that stand far from their dot.
 void Layout::add_leader(const cv::Point2d& dot, const cv::Rect2d& words) {
-  constexpr double kNear = 14;
+  constexpr double kNear = 24;
   const cv::Point2d end(std::clamp(dot.x, words.x, words.x + words.width),
                         std::clamp(dot.y, words.y, words.y + words.height));
   if (std::hypot(end.x - dot.x, end.y - dot.y) > kNear) line({dot, end}, kLeader, 0.8);
