@@ -26,11 +26,12 @@ std::vector<int> groups_of(const PosedFrames& all, const std::vector<std::size_t
 
 }  // namespace
 
-void FramesArguments::add_to(CLI::App& verb) {
+void FramesArguments::add_to(CLI::App& verb, const std::string& standard) {
   verb.add_option("data", data,
                   "An RGB-D folder, TUM RGB-D, 7-Scenes, RealEstate10K (text file with a folder of "
-                  "photos), or rooms:SEED:COUNT, views of procedural rooms")
-      ->required()
+                  "photos), or rooms:SEED:COUNT, views of procedural rooms" +
+                      (standard.empty() ? "" : " (default: " + standard + ")"))
+      ->required(standard.empty())
       ->type_name("DATA");
   verb.add_option("--frames", frames,
                   "Only frames from A to B, both included, by timestamp or frame number; A: and :B "

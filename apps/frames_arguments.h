@@ -20,7 +20,8 @@ struct FramesArguments {
   FrameChoice choice;
   std::optional<double> depth_scale;
 
-  void add_to(CLI::App& verb);
+  /// @param standard  what is taken when DATA is not given, for the help; empty = it must be
+  void add_to(CLI::App& verb, const std::string& standard = "");
 };
 
 /// Frames with poses, some of them chosen.

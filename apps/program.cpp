@@ -73,6 +73,7 @@ int run(int argc, char** argv) {
   add_train(program, context);
   add_eval(program, context);
   add_stress(program, context);
+  add_chart(program, context);
   program.require_subcommand(0, 1);
   try {
     program.parse(argc, argv);

@@ -36,5 +36,6 @@ void add_weights(CLI::App& program, const Context& context);
 void add_train(CLI::App& program, const Context& context);
 void add_eval(CLI::App& program, const Context& context);
 void add_stress(CLI::App& program, const Context& context);
+void add_chart(CLI::App& program, const Context& context);
 
 }  // namespace ps::apps

@@ -11,19 +11,15 @@
 namespace fs = std::filesystem;
 
 namespace ps::apps {
-namespace {
 
-/// Where the weights of one network are.
-fs::path file_of(const std::string& weights, const std::string& name) {
+fs::path weights_of(const std::string& weights, const std::string& name) {
   if (weights.empty()) return default_weights(name);
   std::error_code ignored;
   return fs::is_directory(weights, ignored) ? fs::path(weights) / name : fs::path(weights);
 }
 
-}  // namespace
-
 std::string depth_weights(const std::string& weights) {
-  return file_of(weights, "depth.safetensors").string();
+  return weights_of(weights, "depth.safetensors").string();
 }
 
 const std::vector<std::string>& selection_names() {
@@ -44,7 +40,7 @@ void check_codes(const models::Autoencoder& autoencoder, const models::PixelCnn&
 SceneModels::SceneModels(const std::string& weights, const std::string& selection,
                          const Context& context) {
   const auto read = [&](const char* name) {
-    const fs::path file = file_of(weights, name);
+    const fs::path file = weights_of(weights, name);
     if (std::find(files_.begin(), files_.end(), file) == files_.end()) files_.push_back(file);
     return read_weights(file);
   };
@@ -63,7 +59,7 @@ SceneModels::SceneModels(const std::string& weights, const std::string& selectio
     classifier_ = std::make_unique<models::Classifier>(read("classifier.safetensors"));
     scorers_["classifier"] = outpaint::entropy_scorer(*classifier_);
   }
-  check_codes(*autoencoder_, *pixel_cnn_, file_of(weights, "pixelcnn.safetensors").string());
+  check_codes(*autoencoder_, *pixel_cnn_, weights_of(weights, "pixelcnn.safetensors").string());
 }
 
 SceneNetworks SceneModels::networks() const {

@@ -13,6 +13,10 @@
 
 namespace ps::apps {
 
+/// @return the file of one network that --weights names, or of what comes with the program
+/// @param name  "refine.safetensors"
+std::filesystem::path weights_of(const std::string& weights, const std::string& name);
+
 /// @return the file of the depth network that --weights names
 std::string depth_weights(const std::string& weights);
 

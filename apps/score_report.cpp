@@ -6,7 +6,6 @@
 #include <cstdio>
 
 #include "apps/output.h"
-#include "io/atomic_file.h"
 #include "libps/core/error.h"
 
 namespace ps::apps {
@@ -19,26 +18,6 @@ std::string formatted(const char* format, double value) {
   char text[40];
   std::snprintf(text, sizeof text, format, value);
   return text;
-}
-
-/// Shortest that reads back the same; empty for NaN.
-std::string csv_number(double value) {
-  if (std::isnan(value)) return "";
-  char text[40];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
-
-/// In quotes where it needs them (RFC 4180).
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
-std::string title_of(const ScoreColumn& column) {
-  return column.unit.empty() ? column.name : column.name + ", " + column.unit;
 }
 
 std::string padded(const std::string& text, std::size_t width) {
@@ -91,19 +70,43 @@ std::string text_of_columns(const ScoreSummary& summary, const std::vector<TextC
   return text;
 }
 
-/// JSON knows neither NaN nor infinity.
-Json number(double value) {
-  if (std::isnan(value)) return nullptr;
-  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
-  return value;
-}
-
 std::filesystem::path summary_file(const std::string& output) { return beside(output, "csv"); }
 std::filesystem::path samples_file(const std::string& output) {
   return beside(output, "samples.csv");
 }
 
 }  // namespace
+
+std::string csv_number(double value) {
+  if (std::isnan(value)) return "";
+  char text[40];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string title_of(const ScoreColumn& column) {
+  return column.unit.empty() ? column.name : column.name + ", " + column.unit;
+}
+
+Json json_number(double value) {
+  if (std::isnan(value)) return nullptr;
+  if (std::isinf(value)) return value > 0 ? "inf" : "-inf";
+  return value;
+}
+
+Json to_json(const Interval& interval) {
+  return {{"value", json_number(interval.value)},
+          {"low", json_number(interval.low)},
+          {"high", json_number(interval.high)},
+          {"samples", interval.samples}};
+}
 
 ScoreSummary summary_of(const ScoreTable& table, const BootstrapOptions& options) {
   ScoreSummary summary = {"method", table.methods(), table.columns(), {}};
@@ -143,11 +146,7 @@ Json to_json(const ScoreSummary& summary) {
   for (std::size_t r = 0; r < summary.rows.size(); ++r) {
     Json& row = json[summary.rows[r]] = Json::object();
     for (std::size_t c = 0; c < summary.columns.size(); ++c) {
-      const Interval& cell = summary.cells[r][c];
-      row[title_of(summary.columns[c])] = {{"value", number(cell.value)},
-                                           {"low", number(cell.low)},
-                                           {"high", number(cell.high)},
-                                           {"samples", cell.samples}};
+      row[title_of(summary.columns[c])] = to_json(summary.cells[r][c]);
     }
   }
   return json;

@@ -21,6 +21,9 @@ struct ScoreSummary {
 
 ScoreSummary summary_of(const ScoreTable& table, const BootstrapOptions& options);
 
+/// @return {value, low, high, samples}, numbers as json_number() has them
+Json to_json(const Interval& interval);
+
 /// @return lines for a terminal: each figure, and below it its interval
 /// @param most_columns  side by side
 std::string text_of(const ScoreSummary& summary, std::size_t most_columns = 5);
@@ -28,6 +31,18 @@ std::string text_of(const ScoreSummary& summary, std::size_t most_columns = 5);
 /// @return {ROW: {COLUMN: {value, low, high, samples}}}; what is no number is null, what is
 /// infinite "inf"
 Json to_json(const ScoreSummary& summary);
+
+/// @return the shortest number that reads back the same; empty for NaN
+std::string csv_number(double value);
+
+/// @return the text, in quotes where it needs them (RFC 4180)
+std::string csv_text(const std::string& text);
+
+/// @return JSON knows neither NaN (null) nor infinity ("inf", "-inf")
+Json json_number(double value);
+
+/// @return "AbsRel", or with a unit "PSNR, dB"
+std::string title_of(const ScoreColumn& column);
 
 /// @return a line for each cell: ROW, score, value, low, high, samples
 std::string to_csv(const ScoreSummary& summary);

@@ -22,7 +22,7 @@ std::string number(double value) {
   return std::isinf(value) ? "none" : std::isnan(value) ? "nan" : text;
 }
 
-Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Image sheet_at(const stress::Axis& axis, const stress::AxisResult& result, std::size_t step) {
   std::vector<SheetTile> tiles;
@@ -147,10 +147,10 @@ Json to_json(const std::vector<StressRow>& rows) {
     for (const stress::Curve& curve : row.result.curves) {
       Json scores = Json::array(), refused = Json::object();
       for (const stress::Step& step : curve.steps) {
-        scores.push_back(json_number(step.score));
+        scores.push_back(finite_or_null(step.score));
         if (!step.refused.empty()) refused[number(step.value)] = step.refused;
       }
-      methods[curve.method] = {{"breaks", json_number(curve.breaks)}, {"scores", scores}};
+      methods[curve.method] = {{"breaks", finite_or_null(curve.breaks)}, {"scores", scores}};
       if (!refused.empty()) methods[curve.method]["refused"] = refused;
     }
     Json jumps = Json::array(), violations = Json::array();

@@ -5,7 +5,6 @@
 #include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
 #include <vtkCaptionActor2D.h>
-#include <vtkImageData.h>
 #include <vtkInteractorStyleTrackballCamera.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
@@ -15,12 +14,12 @@
 #include <vtkRenderer.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
-#include <vtkWindowToImageFilter.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "apps/viewer_actors.h"
+#include "apps/window_picture.h"
 #include "libps/core/error.h"
 
 namespace ps::apps {
@@ -225,16 +224,7 @@ void pixelsynth_snapshot(const Cloud& cloud, const ViewerOptions& options, Image
   vtkObject::GlobalWarningDisplayOff();
   Window window(cloud, options, false);
   check_ready(cloud, window.render_window());
-  window.render_window().Render();
-  vtkNew<vtkWindowToImageFilter> grab;
-  grab->SetInput(&window.render_window());
-  grab->ReadFrontBufferOff();
-  grab->Update();
-  vtkImageData* grabbed = grab->GetOutput();
-  const int* size = grabbed->GetDimensions();
-  const cv::Mat3b bytes(size[1], size[0], static_cast<cv::Vec3b*>(grabbed->GetScalarPointer()));
-  bytes.convertTo(*picture, CV_32F, 1 / 255.0);
-  cv::flip(*picture, *picture, 0);  // VTK's rows go upwards
+  *picture = picture_of(window.render_window());
 }
 
 }  // namespace ps::apps

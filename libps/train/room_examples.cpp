@@ -4,7 +4,7 @@
 #include "libps/core/random.h"
 #include "libps/rooms/camera.h"
 #include "libps/rooms/camera_effects.h"
-#include "libps/rooms/shot.h"
+#include "libps/scene/room_view.h"
 
 namespace ps::train {
 namespace {
@@ -16,27 +16,10 @@ std::uint64_t key(std::uint64_t seed, std::uint32_t i, Purpose purpose) {
   return (static_cast<std::uint64_t>(bits[0]) << 32) | bits[1];
 }
 
-Intrinsics intrinsics_of(const rooms::Camera& camera) {
-  return {camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy};
-}
-
-Pose pose_of(const rooms::Camera& camera) {
-  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  for (int i = 0; i < 12; ++i)
-    matrix(i / 4, i % 4) = camera.world_from_cam[static_cast<std::size_t>(i)];
-  return checked_pose(matrix, "room camera");
-}
-
 View photo(const rooms::Room& room, const rooms::Camera& camera, std::uint64_t effects) {
   rooms::Shot shot = rooms::shoot(room, camera);
   rooms::degrade(shot, effects);
-  View view;
-  view.color =
-      Image(shot.height, shot.width, reinterpret_cast<cv::Vec3f*>(shot.color.data())).clone();
-  view.depth = Depth(shot.height, shot.width, shot.depth.data()).clone();
-  view.intrinsics = intrinsics_of(camera);
-  view.world_from_cam = pose_of(camera);
-  return view;
+  return view_of(shot, camera);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@ app_test(no_verb_prints_help [=[
   works
   prints 'Subcommands'
   prints 'fuse']=])
-app_test(every_verb_has_help [=[for v in scene depth fuse render view "probe splat" "probe depth" "probe vq-encode" "probe vq-decode" "probe pixelcnn" "probe refine" "probe discriminator" "probe lpips" "probe classifier" weights "weights info" "weights convert"; do works $v --help; prints Options; done]=])
+app_test(every_verb_has_help [=[for v in scene depth fuse render view chart "probe splat" "probe depth" "probe vq-encode" "probe vq-decode" "probe pixelcnn" "probe refine" "probe discriminator" "probe lpips" "probe classifier" weights "weights info" "weights convert"; do works $v --help; prints Options; done]=])
 app_test(version_is_printed [=[
   works --version
   prints '^pixelsynth [0-9]+[.][0-9]+[.][0-9]+$']=])

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/chart_report.h"
+
+namespace ps::apps {
+
+/// @brief One web page that needs nothing else and runs nothing: each knob's chart, whose dots lead
+/// to the pictures behind them, and its table.
+/// @param about  a line on machine, data and seed
+std::string html_of(const std::vector<KnobChart>& charts, const std::string& about);
+
+}  // namespace ps::apps

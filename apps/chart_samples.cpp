@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/chart_samples.h"
+
+#include <memory>
+
+#include "libps/core/error.h"
+#include "libps/scene/knob_samples.h"
+
+namespace ps::apps {
+namespace {
+
+/// Loads a frame that must have depth.
+View load_frame(const PosedFrames& frames, std::size_t i) {
+  View view = frames.load(i);
+  if (view.depth.empty() || cv::countNonZero(view.depth) == 0) {
+    throw Error(frames.frames[i].name, "has no depth", "frames with true depth");
+  }
+  check(view, frames.frames[i].name);
+  return view;
+}
+
+void check_lens(const View& view, const View& input, const std::string& name) {
+  if (view.color.size() == input.color.size()) return;
+  throw Error(name, "is of another size than other frames", "frames of one camera");
+}
+
+}  // namespace
+
+ChartSamples room_samples(std::size_t count, int side, const Context& context) {
+  constexpr std::uint64_t kFirst = 9001, kRooms = 1000000;  // as io/posed_frames numbers them
+  const std::uint64_t first = (kFirst + context.seed) * kRooms;
+  return {count,
+          [=](std::size_t i) {
+            KnobSample sample = room_sample(first + i, side);
+            sample.group = static_cast<int>(i);
+            return sample;
+          },
+          {{"data", "rooms"}, {"samples", count}, {"side", side}, {"first_room", first}}};
+}
+
+ChartSamples frame_samples(const FramesArguments& arguments, std::size_t count,
+                           const Context& context) {
+  constexpr std::size_t kApart = 3;
+  const auto frames = std::make_shared<ChosenFrames>(choose_posed_frames(arguments, context));
+  std::vector<Pose> poses;
+  std::vector<int> worlds;
+  for (const std::size_t i : frames->chosen) {
+    poses.push_back(frames->all.frames[i].world_from_cam);
+    worlds.push_back(frames->all.frames[i].world);
+  }
+  const auto sets = std::make_shared<std::vector<FrameSet>>(
+      choose_frame_sets(poses, worlds, count, kApart, context.seed));
+  if (sets->empty()) {
+    throw Error(arguments.data, "no two frames are a pair",
+                "two of one world that look 20 to 60 degrees apart, within a metre");
+  }
+  const auto load = [=](std::size_t s) {
+    const FrameSet& set = (*sets)[s];
+    const auto view = [&](std::size_t i) { return load_frame(frames->all, frames->chosen[i]); };
+    const auto name = [&](std::size_t i) { return frames->all.frames[frames->chosen[i]].name; };
+    KnobSample sample = {name(set.pair.source) + " to " + name(set.pair.target),
+                         frames->groups[set.pair.source],
+                         view(set.pair.source),
+                         view(set.pair.target),
+                         {},
+                         {}};
+    check_lens(sample.target, sample.input, name(set.pair.target));
+    for (const std::size_t i : set.others) sample.others.push_back(view(i));
+    return sample;
+  };
+  Json report = frames_report(arguments, *frames);
+  report["samples"] = sets->size();
+  return {sets->size(), load, report};
+}
+
+}  // namespace ps::apps
