@@ -205,7 +205,7 @@ bool refuse(const std::vector<Pair>& pairs, const FrameStudyOptions& options,
     weigh(pairs, words);
   }
   for (FrameWord& word : *words) word.refused = false;
-  return !options.refuse;
+  return !options.refuse || words->empty();
 }
 
 void even_colors(const std::vector<Pair>& pairs, std::vector<FrameWord>* words) {
@@ -262,14 +262,14 @@ FrameStudy study_frames(const ViewSource& source, const FrameStudyOptions& optio
   study.words.resize(source.count);
   std::vector<Pair> pairs = plan_pairs(frames, options.partners);
   hold_against_each_other(frames, study.words, options.tolerance, &pairs);
-  const bool sound_poses = refuse(pairs, options, &study.words);
+  if (!refuse(pairs, options, &study.words)) return study;
   const auto out = [&](const Pair& p) {
     return study.words[p.a].refused || study.words[p.b].refused;
   };
   pairs.erase(std::remove_if(pairs.begin(), pairs.end(), out), pairs.end());
   hold_against_each_other(frames, study.words, kWideTolerance, &pairs);
   study.spread = spread_of(pairs);
-  if (options.scales && sound_poses) even_scales(frames, &pairs, &study);
+  if (options.scales) even_scales(frames, &pairs, &study);
   if (options.gains) even_colors(pairs, &study.words);
   return study;
 }
