@@ -185,8 +185,9 @@ void weigh(const std::vector<Pair>& pairs, std::vector<FrameWord>* words) {
 }
 
 /// Refuses the worst frame, then the worst of what is left, and so on; none at all if that comes to
-/// half of them, as nobody can tell then which half is right.
-void refuse(const std::vector<Pair>& pairs, const FrameStudyOptions& options,
+/// half of them, as nobody can tell then which half is right: returns
+/// false.
+bool refuse(const std::vector<Pair>& pairs, const FrameStudyOptions& options,
             std::vector<FrameWord>* words) {
   weigh(pairs, words);
   for (std::size_t refused = 0; options.refuse && 2 * refused < words->size(); ++refused) {
@@ -197,12 +198,14 @@ void refuse(const std::vector<Pair>& pairs, const FrameStudyOptions& options,
       usual.push_back(word.contradicted);
       if (worst == nullptr || word.contradicted > worst->contradicted) worst = &word;
     }
-    if (worst == nullptr) return;
-    if (worst->contradicted <= std::max(options.contradicted, 3 * median(std::move(usual)))) return;
+    if (worst == nullptr) return true;
+    const double most = std::max(options.contradicted, 3 * median(std::move(usual)));
+    if (worst->contradicted <= most) return true;
     worst->refused = true;
     weigh(pairs, words);
   }
   for (FrameWord& word : *words) word.refused = false;
+  return !options.refuse || words->empty();
 }
 
 void even_colors(const std::vector<Pair>& pairs, std::vector<FrameWord>* words) {
@@ -259,7 +262,7 @@ FrameStudy study_frames(const ViewSource& source, const FrameStudyOptions& optio
   study.words.resize(source.count);
   std::vector<Pair> pairs = plan_pairs(frames, options.partners);
   hold_against_each_other(frames, study.words, options.tolerance, &pairs);
-  refuse(pairs, options, &study.words);
+  if (!refuse(pairs, options, &study.words)) return study;
   const auto out = [&](const Pair& p) {
     return study.words[p.a].refused || study.words[p.b].refused;
   };

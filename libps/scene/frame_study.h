@@ -18,7 +18,8 @@ struct FrameStudyOptions {
   double tolerance = 0.08;
   /// A frame is left out when in the middle one of its pairs more than this share of what both
   /// see is contradicted, and more than three times what is usual among the frames: the worst
-  /// first, then the worst of the others. None is, if that would be half of them.
+  /// first, then the worst of the others. None is, if that would be half of them, and
+  /// nothing else is said then.
   double contradicted = 0.15;
 };
 

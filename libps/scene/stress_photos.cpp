@@ -169,7 +169,9 @@ class PhotoAxes {
         Question question = ask(photo.view, value, {options.seed, static_cast<std::uint32_t>(i)});
         if (method == kOurs && question.holes) complete(&question);
         const MethodView shown = shown_by(method, question);
-        if ((method == kOurs || method == kUnguarded) && outcome.overwritten.empty()) {
+        // Not of ours without its guard: where depth is missing nobody knows what would stand
+        // before what was seen, which is what the guard is for.
+        if (method == kOurs && outcome.overwritten.empty()) {
           outcome.overwritten = overwritten(shown, shown_by("mean-colour", question));
         }
         outcome.finite = outcome.finite && cv::checkRange(shown.color);

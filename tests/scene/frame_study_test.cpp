@@ -81,6 +81,19 @@ TEST(FrameStudy, a_lost_frame_is_refused_and_no_other) {
   EXPECT_FALSE(heeded.load(1).depth.empty());
 }
 
+TEST(FrameStudy, no_frame_is_refused_where_half_are_lost) {
+  std::vector<View> views = frames();
+  for (std::size_t i = 0; i < views.size(); i += 2) {
+    const double turn = .3 + .1 * static_cast<double>(i);
+    views[i].world_from_cam.rotate(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitY()));
+    views[i].world_from_cam.translation().y() += turn - .6;
+  }
+  const FrameStudy study = study_frames(source_of(views));
+  std::size_t refused = 0;
+  for (const FrameWord& word : study.words) refused += word.refused;
+  EXPECT_LT(2 * refused, views.size());
+}
+
 TEST(FrameStudy, spread_is_that_of_noise_and_widens_the_tolerance) {
   std::vector<View> views = frames();
   for (std::size_t i = 0; i < views.size(); ++i) {
