@@ -121,8 +121,7 @@ void ChartKnobs::add_widths(const ChartKnobOptions& options, const Context& cont
 void ChartKnobs::complete(KnobSample& sample) const {
   if (models_ == nullptr) return;
   View whole = sample.input;
-  whole.depth = whole.depth.clone();
-  fill_holes(whole, models_->depth());
+  fill_holes(whole, models_->depth().net, models_->depth().scale);
   sample.whole_depth = whole.depth;
 }
 

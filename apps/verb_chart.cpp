@@ -115,7 +115,7 @@ void run_chart(const ChartArguments& a, const CLI::App& verb, const Context& con
   folder.commit();
   std::string text;
   for (const KnobChart& chart : charts) text += text_of(summary_of(chart, bootstrap)) + "\n";
-  print_table(context, text + "* default, + on the Pareto front\n");
+  if (!context.json) print_text(text + "* default, + on the Pareto front\n");
   end_run(context, report, a.output,
           std::to_string(charts.size()) + " knobs on " + std::to_string(samples.count) +
               " pairs of views");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "libps/scene/room_view.h"
 
-#include "libps/rooms/shot.h"
+#include <cstring>
 
 namespace ps {
 namespace {
@@ -31,15 +31,20 @@ rooms::Camera room_camera(const Intrinsics& lens, const Pose& world_from_cam) {
   return camera;
 }
 
-View shoot_view(const rooms::Room& room, const rooms::Camera& camera) {
-  rooms::Shot shot = rooms::shoot(room, camera);
+View view_of(const rooms::Shot& shot, const rooms::Camera& camera) {
+  const cv::Size size(shot.width, shot.height);
   View view;
-  view.color =
-      Image(shot.height, shot.width, reinterpret_cast<cv::Vec3f*>(shot.color.data())).clone();
-  view.depth = Depth(shot.height, shot.width, shot.depth.data()).clone();
+  view.color.create(size);
+  view.depth.create(size);
+  std::memcpy(view.color.data, shot.color.data(), shot.color.size() * sizeof(float));
+  std::memcpy(view.depth.data, shot.depth.data(), shot.depth.size() * sizeof(float));
   view.intrinsics = room_lens(camera);
   view.world_from_cam = room_pose(camera);
   return view;
+}
+
+View shoot_view(const rooms::Room& room, const rooms::Camera& camera) {
+  return view_of(rooms::shoot(room, camera), camera);
 }
 
 }  // namespace ps

@@ -3,6 +3,7 @@
 
 #include "libps/geometry/view.h"
 #include "libps/rooms/camera.h"
+#include "libps/rooms/shot.h"
 
 namespace ps {
 
@@ -14,6 +15,9 @@ Pose room_pose(const rooms::Camera& camera);
 
 /// @return the same lens elsewhere
 rooms::Camera room_camera(const Intrinsics& lens, const Pose& world_from_cam);
+
+/// @param shot  by this camera; throws ps::Error as room_pose() does
+View view_of(const rooms::Shot& shot, const rooms::Camera& camera);
 
 /// @brief What a camera in a procedural room sees: exact depth, 0 outside of windows. Throws
 /// ps::Error as rooms::shoot() and room_pose() do.
