@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <iterator>
 
+#include "apps/chart_picture.h"
 #include "apps/contact_sheet.h"
-#include "apps/curve_picture.h"
 #include "io/photo.h"
 
 namespace ps::apps {
@@ -45,6 +45,31 @@ void write_picture(OutputFolder& out, const std::string& name, const Image& imag
   out.write(name, [&](const std::filesystem::path& path) { write_image(path, image); });
 }
 
+/// Whether values rise by factors; the first may be 0, which a logarithm does not show.
+bool rises_by_factors(const std::vector<double>& values) {
+  constexpr double kFactors = 30;
+  const double least = values[0] > 0 ? values[0] : values[1];
+  return least > 0 && values.back() > kFactors * least;
+}
+
+ChartPicture chart_of(const stress::Axis& axis, const stress::AxisResult& result) {
+  ChartPicture chart;
+  chart.title = axis.name;
+  chart.x_name = axis.unit;
+  chart.y_name = axis.score + (axis.score_unit.empty() ? "" : ", " + axis.score_unit);
+  chart.log_x = rises_by_factors(axis.values);
+  for (const stress::Curve& curve : result.curves) {
+    chart.curves.push_back({curve.method, axis.values, curve.scores()});
+  }
+  const std::vector<double> ends = {
+      axis.values.front() > 0 || !chart.log_x ? axis.values.front() : axis.values[1],
+      axis.values.back()};
+  Curve limit = {stress::criterion_of(axis), ends, {axis.limit, axis.limit}};
+  limit.dots = false;
+  chart.curves.push_back(limit);
+  return chart;
+}
+
 /// Axes where ours breaks before another method that is not a form of ours.
 bool beaten(const StressRow& row, std::string* by) {
   const auto& curves = row.result.curves;
@@ -61,16 +86,9 @@ bool beaten(const StressRow& row, std::string* by) {
 
 void write_axis_pictures(OutputFolder& out, StressRow& row) {
   const stress::Axis& axis = row.axis;
-  CurveChart chart;
-  chart.title = axis.name + ": " + stress::criterion_of(axis);
-  chart.x_label = axis.unit;
-  chart.y_label = axis.score_unit;
-  chart.x = axis.values;
-  chart.limit = axis.limit;
-  for (const stress::Curve& curve : row.result.curves) {
-    chart.curves.push_back({curve.method, curve.scores()});
-  }
-  write_picture(out, axis.name + ".png", curve_picture(chart));
+  const ChartPicture chart = chart_of(axis, row.result);
+  out.write(axis.name + ".png", [&](const auto& path) { write_chart_png(path, chart); });
+  out.write(axis.name + ".svg", [&](const auto& path) { write_chart_svg(path, chart); });
   const std::size_t first = row.result.curves[0].first_broken(axis);
   if (first > 0) {
     write_picture(out, axis.name + "-before.png", sheet_at(axis, row.result, first - 1));

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/display.h"
 #include "apps/interrupt.h"
 #include "apps/method_models.h"
 #include "apps/output.h"
@@ -67,6 +68,7 @@ void run_stress(const StressArguments& a, const CLI::App& verb, const Context& c
   note_interrupts();
   const Stopwatch total;
   OutputFolder out(a.output);
+  const Display display(Display::Need::picture);  // fails before the work
   std::unique_ptr<MethodModels> models;
   const auto networks = [&] {
     models = std::make_unique<MethodModels>(a.weights, std::vector<std::string>{"ours"}, context);
@@ -95,7 +97,8 @@ void add_stress(CLI::App& program, const Context& context) {
       "stress",
       "Where things break: procedural rooms with one thing going wrong at a time, from not at all "
       "to past all use, ours beside other methods. Writes stress.md (the table of breaking "
-      "points), stress.csv, stress.json, and of each axis its curves and pictures just before and "
+      "points), stress.csv, stress.json, and of each axis its curves (PNG, SVG) and pictures just "
+      "before and "
       "just after ours breaks.\n"
       "Every step is also held to what must always be: no crash, everything finite, the same bytes "
       "on one thread and on two, nothing observed overwritten by what was invented. Exit status 1 "

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 app_test(stress_writes_tables_curves_and_pictures [=[
   works stress -o s --axes splat-narrow
-  writes s/stress.json s/stress.csv s/stress.md s/splat-narrow.png s/splat-narrow-before.png
+  writes s/stress.json s/stress.csv s/stress.md s/splat-narrow.png s/splat-narrow.svg s/splat-narrow-before.png
   prints '^splat-narrow +times +ours '
   is "$(grep -c '^splat-narrow,' s/stress.csv)" -eq 24
   grep -q 'Violations' s/stress.md
