@@ -51,8 +51,12 @@ TensorsByName tensors_of(TensorMap files) {
 
 /// What a run must have in common with the one that it goes on with.
 TensorsByName identity(Stage& stage, const TrainOptions& options, std::int64_t step) {
-  const std::vector<std::int64_t> values = {step, options.steps, options.batch,
-                                            static_cast<std::int64_t>(options.seed)};
+  const std::vector<std::int64_t> values = {step,
+                                            options.steps,
+                                            options.batch,
+                                            static_cast<std::int64_t>(options.seed),
+                                            options.arithmetic == "bf16",
+                                            options.keep_codes};
   TensorsByName tensors = {{"run." + options.stage, torch::tensor(values)}};
   for (const auto& network : stage.networks()) {
     tensors.merge(network.parameters->named());
@@ -75,15 +79,24 @@ std::int64_t load_checkpoint(Stage& stage, const TrainOptions& options) {
   const std::string where = path.string();
   const TensorsByName tensors = tensors_of(read_safetensors(path));
   const auto run = tensors.find("run." + options.stage);
-  if (run == tensors.end() || run->second.numel() != 4) {
+  if (run == tensors.end() || run->second.numel() < 4) {
     throw Error(where, "this checkpoint is not of stage " + options.stage, "another --output");
   }
-  const auto value = [&](int i) { return run->second[i].item<std::int64_t>(); };
+  // Older checkpoints say less: they are of f32 and all of the network.
+  const auto value = [&](int i) {
+    return i < run->second.numel() ? run->second[i].item<std::int64_t>() : 0;
+  };
   if (value(1) != options.steps || value(2) != options.batch ||
       value(3) != static_cast<std::int64_t>(options.seed)) {
     throw Error(where,
                 "this run has " + std::to_string(value(1)) + " steps of " +
                     std::to_string(value(2)) + " examples and seed " + std::to_string(value(3)),
+                "the same to go on with it, or another --output");
+  }
+  if ((value(4) != 0) != (options.arithmetic == "bf16") || (value(5) != 0) != options.keep_codes) {
+    throw Error(where,
+                std::string("this run has --arithmetic ") + (value(4) != 0 ? "bf16" : "f32") +
+                    (value(5) != 0 ? " and --keep-codes" : ", without --keep-codes"),
                 "the same to go on with it, or another --output");
   }
   for (const auto& network : stage.networks()) {

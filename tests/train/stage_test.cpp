@@ -151,6 +151,12 @@ TEST_F(Training, of_a_decoder_keeps_the_codes) {
   const auto same = [&](const std::string& name) {
     return before.tensors().at(name).values == after.tensors().at(name).values;
   };
+  TrainOptions other = o;
+  other.keep_codes = false;
+  EXPECT_NE(message_of(other).find("--keep-codes"), std::string::npos);
+  other = o;
+  other.arithmetic = "f32";
+  EXPECT_NE(message_of(other).find("--arithmetic bf16"), std::string::npos);
   EXPECT_TRUE(same("vqvae.quantize_t.embed"));
   EXPECT_TRUE(same("vqvae.enc_b.blocks.0.weight"));
   EXPECT_TRUE(same("vqvae.quantize_conv_t.bias"));
