@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/output.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -81,6 +82,13 @@ void merge(const fs::path& from, const fs::path& to) {
   }
 }
 
+/// Files cannot be renamed into such a folder from beside it.
+bool is_mount_point(const fs::path& folder) {
+  struct stat inside = {}, outside = {};
+  return stat(folder.c_str(), &inside) == 0 && S_ISDIR(inside.st_mode) &&
+         stat(folder.parent_path().c_str(), &outside) == 0 && inside.st_dev != outside.st_dev;
+}
+
 }  // namespace
 
 OutputFolder::OutputFolder(const fs::path& target) : given_(target) {
@@ -102,8 +110,8 @@ OutputFolder::OutputFolder(const fs::path& target) : given_(target) {
       },
       given);
   check_parent(target_, given_);
-  partial_ = target_;
-  partial_ += ".partial-" + std::to_string(getpid());
+  const std::string name = ".partial-" + std::to_string(getpid());
+  partial_ = is_mount_point(target_) ? target_ / name : fs::path(target_.string() + name);
   const bool made = on_files([this] { return fs::create_directory(partial_); }, given);
   if (!made) throw Error(partial_.string(), "is there already, of a run that was ended; remove it");
 }

@@ -10,7 +10,8 @@ namespace ps::apps {
 
 /// @brief A folder of outputs that appears when commit() succeeds, or not at all.
 ///
-/// Everything is written into `TARGET.partial-PID` beside it. commit() renames that to the target,
+/// Everything is written into `TARGET.partial-PID` beside it (inside, as `.partial-PID`, where the
+/// target is a mount point). commit() renames that to the target,
 /// or, when the target is a folder already, moves its files over one by one: files of the same name
 /// are replaced, a numbered file (frame_00012.png) of an earlier, longer run is removed, and all
 /// others stay. It first checks that no file would have to replace a folder or a folder a file.

@@ -86,9 +86,11 @@ void add_stage_options(CLI::App& verb, TrainOptions& o) {
   const auto whole = [&](const char* name, auto& value, const char* what) {
     verb.add_option(name, value, what)->type_name("N")->check(whole_in(0, kManySteps));
   };
-  auto* codes = verb.add_option(
-      "--codes", o.codes, "Weights of a trained vqvae (pixelcnn, refine), or the colours of cells");
-  codes->type_name("FILE|colours")->required(coded);
+  if (coded) {
+    verb.add_option("--codes", o.codes, "Weights of a trained vqvae, or the colours of cells")
+        ->type_name("FILE|colours")
+        ->required();
+  }
   if (o.stage == "vqvae") {
     verb.add_flag("--keep-codes", o.keep_codes,
                   "Train the decoder of --init alone: what was trained on its codes stays true");

@@ -39,8 +39,10 @@ sanitized() {
   suite "address, undefined" asan -LE networks
   export TSAN_OPTIONS=suppressions=$root/tests/tsan.supp
   build tsan core_test eval_test geometry_test nn_test models_test outpaint_test scene_test
-  # Features of photos are found by OpenCV's threads, not by ours, and take minutes here.
-  suite threads tsan -E '_NOT_BUILT|^Apps|^Install|SecondPose|SecondView|PhotoMatches|MatchPhotos'
+  # Features of photos are found by OpenCV's threads, not by ours, and take minutes here; whole
+  # scenes go through the same loops as their parts, which are tested here.
+  suite threads tsan \
+    -E '_NOT_BUILT|^Apps|^Install|SecondPose|SecondView|PhotoMatches|MatchPhotos|Stress|Knobs|ViewMethod'
   build fuzz "${readers[@]%.cpp}"
   if "$root/tests/fuzz/run.sh"; then
     summary+="fuzz: every reader is clean"$'\n'

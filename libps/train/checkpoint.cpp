@@ -56,7 +56,8 @@ TensorsByName identity(Stage& stage, const TrainOptions& options, std::int64_t s
                                             options.batch,
                                             static_cast<std::int64_t>(options.seed),
                                             options.arithmetic == "bf16",
-                                            options.keep_codes};
+                                            options.keep_codes,
+                                            options.codes == kColors};
   TensorsByName tensors = {{"run." + options.stage, torch::tensor(values)}};
   for (const auto& network : stage.networks()) {
     tensors.merge(network.parameters->named());
@@ -98,6 +99,9 @@ std::int64_t load_checkpoint(Stage& stage, const TrainOptions& options) {
                 std::string("this run has --arithmetic ") + (value(4) != 0 ? "bf16" : "f32") +
                     (value(5) != 0 ? " and --keep-codes" : ", without --keep-codes"),
                 "the same to go on with it, or another --output");
+  }
+  if (run->second.numel() > 6 && (value(6) != 0) != (options.codes == kColors)) {
+    throw Error(where, "this run is of other --codes", "the same, or another --output");
   }
   for (const auto& network : stage.networks()) {
     network.parameters->load(tensors, where);

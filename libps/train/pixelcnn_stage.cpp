@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -59,6 +60,8 @@ class PixelCnnStage : public Stage {
     Tensor counts = net_.parameters["code_counts"];
     counts +=
         torch::bincount(codes.flatten(), {}, counts.size(0)).to(torch::kFloat32) / codes.numel();
+    constexpr double kMost = 1e4;  // steps: an f16 holds it, though a run begins with another's
+    counts *= std::min(1.0, kMost / counts.sum().item<double>());
     const double bits = (each.detach() * unseen.flatten()).sum().item<double>() /
                         std::max(unseen.sum().item<double>(), 1.0) / std::log(2.0);
     return {{"loss_bits", loss.item<double>() / std::log(2.0)},

@@ -170,6 +170,9 @@ TEST_F(Training, of_completions_in_colours_needs_no_autoencoder) {
   o.arithmetic = "bf16";
   const TrainReport report = train(o, {});
   EXPECT_GT(report.scores.at("rooms_missing_bits"), 0);
+  TrainOptions other = o;
+  other.codes = folder() / "codes" / "weights.safetensors";
+  EXPECT_NE(message_of(other).find("--codes"), std::string::npos);
   o.arithmetic = "decimal";
   EXPECT_NE(message_of(o).find("'decimal'"), std::string::npos);
 }
