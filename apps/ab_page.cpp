@@ -3,21 +3,14 @@
 
 #include <map>
 
+#include "apps/page_head.h"
 #include "apps/report.h"
 
 namespace ps::apps {
 namespace {
 
-constexpr char kHead[] = R"html(<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta http-equiv="Content-Security-Policy"
-  content="default-src 'none'; img-src data:; script-src 'unsafe-inline'; style-src 'unsafe-inline'">
-<title>Which of two pictures?</title>
-<style>
-  body { margin: 0; padding: 1rem; background: #777; color: #fff; font: 1rem sans-serif; text-align: center; }
+constexpr char kStyle[] =
+    R"css(  body { margin: 0; padding: 1rem; background: #777; color: #fff; font: 1rem sans-serif; text-align: center; }
   #pictures { display: flex; justify-content: center; gap: 2rem; }
   #pictures button { flex: 0 1 45vw; padding: .5rem; border: 2px solid #999; background: none; color: inherit; font: inherit; }
   #pictures button:hover, #pictures button:focus { border-color: #fff; outline: none; }
@@ -30,10 +23,9 @@ constexpr char kHead[] = R"html(<!doctype html>
   pre { max-height: 60vh; overflow: auto; padding: 1rem; background: #333; text-align: left; }
   a { color: #fff; }
   [hidden] { display: none !important; }
-</style>
-</head>
-<body>
-<main id="study">
+)css";
+
+constexpr char kBody[] = R"html(<main id="study">
 <h1 id="question"></h1>
 <p>Press <b>1</b> for the left picture, <b>2</b> for the right one, or click on it. If you cannot tell, guess.</p>
 <figure id="input" hidden><img alt="input"><figcaption>Both were made of this photo.</figcaption></figure>
@@ -193,7 +185,7 @@ std::string html_of(const AbPage& page) {
     study["trials"].push_back(trial_json(trial, page.pairs[trial.pair], album));
   }
   study["images"] = album.take();
-  std::string html = kHead;
+  std::string html = page_head("Which of two pictures?", kStyle, true) + kBody;
   // A file's name must not end the script: in JSON, < can be said in another way.
   for (const char c : study.dump(-1, ' ', true, Json::error_handler_t::replace)) {
     c == '<' ? html += "\\u003c" : html += c;

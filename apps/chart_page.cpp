@@ -5,21 +5,14 @@
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 
+#include "apps/page_head.h"
 #include "io/data_uri.h"
 
 namespace ps::apps {
 namespace {
 
-constexpr char kHead[] = R"html(<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta http-equiv="Content-Security-Policy"
-  content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
-<title>pixelsynth: accuracy against time</title>
-<style>
-  body { margin: 0 auto; padding: 1rem; max-width: 80rem; color: #222; font: 1rem sans-serif; }
+constexpr char kStyle[] =
+    R"css(  body { margin: 0 auto; padding: 1rem; max-width: 80rem; color: #222; font: 1rem sans-serif; }
   .measured { display: flex; flex-wrap: wrap; gap: 1rem; align-items: center; }
   .measured svg { flex: 1 1 30rem; max-width: 45rem; min-width: 0; height: auto; }
   table { border-collapse: collapse; font-size: .85rem; }
@@ -32,11 +25,7 @@ constexpr char kHead[] = R"html(<!doctype html>
   figure.default { border-color: #999; }
   figure:target { border-color: #d55e00; background: #fdeee4; }
   figcaption { font-size: .85rem; }
-</style>
-</head>
-<body>
-<h1>Accuracy against time</h1>
-)html";
+)css";
 
 std::string rounded(double value) {
   char text[32];
@@ -104,9 +93,10 @@ std::string pictures_of(const KnobChart& chart) {
 
 }  // namespace
 
-std::string html_of(const std::vector<KnobChart>& charts, const std::string& about) {
-  std::string html = kHead;
-  html += "<p>" + escaped(about) + "</p>\n";
+std::string html_of(const std::vector<KnobChart>& charts, const BootstrapOptions& options,
+                    const std::string& about) {
+  std::string html = page_head("pixelsynth: accuracy against time", kStyle, false);
+  html += "<h1>Accuracy against time</h1>\n<p>" + escaped(about) + "</p>\n";
   html +=
       "<p>Click on a dot to see its pictures. * is the default (in a ring, framed), + is on the "
       "Pareto front: no other setting is as fast and as accurate. Bars are 95 % bootstrap "
@@ -114,7 +104,7 @@ std::string html_of(const std::vector<KnobChart>& charts, const std::string& abo
   for (const KnobChart& chart : charts) {
     html += "<h2>" + escaped(chart.knob.name) + "</h2>\n<p>" + escaped(chart.knob.what) +
             "</p>\n<div class=\"measured\">\n" + svg_of(drawing_of(picture_of(chart))) +
-            table_of(summary_of(chart, {})) + "</div>\n" + pictures_of(chart);
+            table_of(summary_of(chart, options)) + "</div>\n" + pictures_of(chart);
   }
   return html + "</body>\n</html>\n";
 }

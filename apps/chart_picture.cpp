@@ -5,9 +5,12 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <set>
+#include <utility>
 
 #include "apps/chart_axis.h"
+#include "apps/chart_labels.h"
+#include "apps/chart_legend.h"
+#include "apps/chart_style.h"
 #include "apps/report.h"
 #include "io/photo.h"
 #include "libps/core/error.h"
@@ -15,12 +18,10 @@
 namespace ps::apps {
 namespace {
 
-/// Okabe and Ito's colours, which colour-blind people can tell apart.
-constexpr unsigned kColors[] = {0x0072b2, 0xd55e00, 0x009e73, 0xcc79a7, 0xe69f00, 0x56b4e9};
-constexpr unsigned kInk = 0x222222, kGrid = 0xe4e4e4, kLeader = 0x888888;
-constexpr double kWords = 13, kTitle = 16, kPng = 1.5, kRing = 8;
-constexpr double kAbove = 62, kBelow = 52;  ///< the plot, pixels
-constexpr int kMostX = 9, kMostY = 8;       ///< ticks
+constexpr double kPng = 1.5;
+constexpr double kAbove = 62, kBelow = 52, kRight = 20;  ///< the plot, pixels
+constexpr double kLeastPlot = 30, kLegend = 46;
+constexpr int kMostX = 9, kMostY = 8;  ///< ticks
 
 void check(const ChartPicture& picture) {
   if (picture.width < 200 || picture.height < 150) {
@@ -68,27 +69,21 @@ class Layout {
   void add_curve(const Curve& curve, unsigned color);
   void add_bars(const Curve& curve, std::size_t i, unsigned color);
   void add_marks();
-  void add_labels();
-  void add_leader(const cv::Point2d& dot, const cv::Rect2d& words);
-  void add_legend();
   std::optional<cv::Point2d> place(double x, double y) const;
   void line(std::vector<cv::Point2d> points, unsigned color, double width, bool dashed = false) {
     drawing_.lines.push_back({std::move(points), color, width, dashed});
   }
-  double hidden_by(const cv::Rect2d& words) const;
-
-  struct Label {
-    cv::Point2d at;
-    std::string words;
-  };
 
   const ChartPicture& picture_;
-  const Axis y_;
+  const Range y_range_;
+  const double left_;  ///< of the plot, pixels
+  const ChartLegend legend_;
   const cv::Rect2d plot_;  ///< pixels
+  const Axis y_;
   const Axis x_;
   Drawing drawing_;
-  std::vector<Label> labels_;
-  std::vector<cv::Rect2d> taken_;  ///< by words and dots
+  std::vector<ChartLabel> labels_;
+  std::vector<cv::Rect2d> taken_;  ///< by dots
 };
 
 Range x_range_of(const ChartPicture& picture) {
@@ -112,17 +107,30 @@ Range y_range_of(const ChartPicture& picture) {
 }
 
 /// Room for the words at the ticks and for the axis's name.
-double left_of(const Axis& y) {
+double left_of(const Range& y) {
   double widest = 0;
-  for (const Tick& tick : y.ticks(kMostY)) widest = std::max(widest, width_of(tick.words, kWords));
+  for (const Tick& tick : y.axis(false, 1, 0).ticks(kMostY)) {  // the same wherever they stand
+    widest = std::max(widest, width_of(tick.words, kWords));
+  }
   return 36 + widest;
+}
+
+cv::Rect2d plot_of(const ChartPicture& picture, double left, const ChartLegend& legend) {
+  const double above = kAbove + legend.more_height();
+  const double width = picture.width - kRight - left, height = picture.height - kBelow - above;
+  if (width < kLeastPlot || height < kLeastPlot) {
+    throw Error("chart", "its words leave no room for the plot", "a larger picture");
+  }
+  return {left, above, width, height};
 }
 
 Layout::Layout(const ChartPicture& picture)
     : picture_(picture),
-      y_(y_range_of(picture).axis(false, picture.height - kBelow, kAbove)),
-      plot_(cv::Point2d(left_of(y_), kAbove),
-            cv::Point2d(picture.width - 20, picture.height - kBelow)),
+      y_range_(y_range_of(picture)),
+      left_(left_of(y_range_)),
+      legend_(picture, left_, picture.width - kRight),
+      plot_(plot_of(picture, left_, legend_)),
+      y_(y_range_.axis(false, plot_.y + plot_.height, plot_.y)),
       x_(x_range_of(picture).axis(picture.log_x, plot_.x, plot_.x + plot_.width)) {
   drawing_.width = picture.width;
   drawing_.height = picture.height;
@@ -174,7 +182,6 @@ void Layout::add_bars(const Curve& curve, std::size_t i, unsigned color) {
 }
 
 void Layout::add_curve(const Curve& curve, unsigned color) {
-  constexpr double kRadius = 4;
   std::vector<cv::Point2d> run;
   const auto end_run = [&] {
     if (curve.line && run.size() > 1) line(run, color, 1.8, !curve.dots);
@@ -189,8 +196,7 @@ void Layout::add_curve(const Curve& curve, unsigned color) {
     run.push_back(*at);
     add_bars(curve, i, color);
     if (curve.dots) {
-      drawing_.dots.push_back(
-          {*at, kRadius, color, false, curve.links.empty() ? "" : curve.links[i]});
+      drawing_.dots.push_back({*at, kDot, color, false, curve.links.empty() ? "" : curve.links[i]});
       taken_.emplace_back(at->x - kRing, at->y - kRing, 2 * kRing, 2 * kRing);
     }
     if (!curve.labels.empty()) labels_.push_back({*at, curve.labels[i]});
@@ -204,91 +210,14 @@ void Layout::add_marks() {
   }
 }
 
-/// How much of what is drawn already these words would hide.
-double Layout::hidden_by(const cv::Rect2d& words) const {
-  double cost = 0;
-  const cv::Rect2d inside = words & plot_;
-  cost += 20 * (words.area() - inside.area());
-  for (const cv::Rect2d& other : taken_) cost += 5 * (words & other).area();
-  for (const Drawing::Line& drawn : drawing_.lines) {
-    if (drawn.color == kGrid) continue;
-    for (std::size_t i = 1; i < drawn.points.size(); ++i) {
-      constexpr int kSteps = 40;
-      for (int s = 0; s <= kSteps; ++s) {
-        const cv::Point2d p =
-            drawn.points[i - 1] + (drawn.points[i] - drawn.points[i - 1]) * (s / double(kSteps));
-        cost += words.contains(p) ? 8 : 0;
-      }
-    }
-  }
-  return cost;
-}
-
-/// A thin line to words that stand far from their dot.
-void Layout::add_leader(const cv::Point2d& dot, const cv::Rect2d& words) {
-  constexpr double kNear = 24;
-  const cv::Point2d end(std::clamp(dot.x, words.x, words.x + words.width),
-                        std::clamp(dot.y, words.y, words.y + words.height));
-  if (std::hypot(end.x - dot.x, end.y - dot.y) > kNear) line({dot, end}, kLeader, 0.8);
-}
-
-void Layout::add_labels() {
-  for (const Label& label : labels_) {
-    const double width = width_of(label.words, kWords) + 2, height = kWords;
-    std::optional<cv::Rect2d> best;
-    double least = 0;
-    for (const double far : {0.0, 9.0, 20.0}) {
-      const double r = 7 + far;
-      for (const cv::Point2d& corner :
-           {cv::Point2d(r, -r - height / 2), cv::Point2d(-r - width, -r - height / 2),
-            cv::Point2d(r, r - height / 2), cv::Point2d(-r - width, r - height / 2),
-            cv::Point2d(r, -height / 2), cv::Point2d(-r - width, -height / 2),
-            cv::Point2d(-width / 2, -r - height), cv::Point2d(-width / 2, r)}) {
-        const cv::Rect2d words(label.at.x + corner.x, label.at.y + corner.y, width, height);
-        const double cost = hidden_by(words) + far;
-        if (!best || cost < least) {
-          best = words;
-          least = cost;
-        }
-      }
-    }
-    taken_.push_back(*best);
-    add_leader(label.at, *best);
-    drawing_.texts.push_back({{best->x + 1, best->y + height - 2}, label.words, kWords});
-  }
-}
-
-/// One line of the legend, between the title and the plot.
-void Layout::add_legend() {
-  double x = plot_.x;
-  const double y = 46;
-  const auto words = [&](const std::string& name) {
-    drawing_.texts.push_back({{x + 30, y + 4.5}, name, kWords});
-    x += 30 + width_of(name, kWords) + 16;
-  };
-  std::size_t c = 0;
-  for (const Curve& curve : picture_.curves) {
-    const unsigned color = kColors[c++ % std::size(kColors)];
-    if (curve.name.empty()) continue;
-    if (curve.line) line({{x, y}, {x + 24, y}}, color, 1.8, !curve.dots);
-    if (curve.dots) drawing_.dots.push_back({{x + 12, y}, 4, color});
-    words(curve.name);
-  }
-  std::set<std::string> named;
-  for (const ChartMark& mark : picture_.marked) {
-    if (mark.name.empty() || !named.insert(mark.name).second) continue;
-    drawing_.dots.push_back({{x + 12, y}, kRing, kInk, true});
-    words(mark.name);
-  }
-}
-
 Drawing Layout::drawing() && {
   add_axes();
-  std::size_t c = 0;
-  for (const Curve& curve : picture_.curves) add_curve(curve, kColors[c++ % std::size(kColors)]);
-  add_labels();
+  for (std::size_t c = 0; c < picture_.curves.size(); ++c) {
+    add_curve(picture_.curves[c], color_of_curve(c));
+  }
+  add_labels(labels_, plot_, std::move(taken_), drawing_);
   add_marks();
-  add_legend();
+  legend_.draw(kLegend, drawing_);
   return std::move(drawing_);
 }
 

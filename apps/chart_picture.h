@@ -36,8 +36,9 @@ struct ChartPicture {
   int width = 720, height = 480;  ///< pixels of the SVG; a PNG has half as many again
 };
 
-/// @brief Lays a chart out: axes with round numbers around all that is finite, a legend, labels
-/// where they hide least. Throws ps::Error when a curve's vectors differ in length, or the picture
+/// @brief Lays a chart out: axes with round numbers around all that is finite, a legend of as many
+/// lines as it takes, labels where they hide least. Nine curves have colours of their own. Throws
+/// ps::Error when a curve's vectors differ in length, or the picture
 /// is too small for its words.
 Drawing drawing_of(const ChartPicture& picture);
 

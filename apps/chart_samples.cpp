@@ -5,6 +5,7 @@
 
 #include "libps/core/error.h"
 #include "libps/scene/knob_samples.h"
+#include "libps/scene/room_view.h"
 
 namespace ps::apps {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 /// Loads a frame that must have depth.
 View load_frame(const PosedFrames& frames, std::size_t i) {
   View view = frames.load(i);
-  if (view.depth.empty() || cv::countNonZero(view.depth) == 0) {
+  if (!has_depth(view)) {
     throw Error(frames.frames[i].name, "has no depth", "frames with true depth");
   }
   check(view, frames.frames[i].name);
@@ -27,8 +28,8 @@ void check_lens(const View& view, const View& input, const std::string& name) {
 }  // namespace
 
 ChartSamples room_samples(std::size_t count, int side, const Context& context) {
-  constexpr std::uint64_t kFirst = 9001, kRooms = 1000000;  // as io/posed_frames numbers them
-  const std::uint64_t first = (kFirst + context.seed) * kRooms;
+  constexpr std::uint64_t kFirst = 9001;
+  const std::uint64_t first = room_number(kFirst + context.seed, 0);
   return {count,
           [=](std::size_t i) {
             KnobSample sample = room_sample(first + i, side);

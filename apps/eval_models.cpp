@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/eval_models.h"
 
+#include "io/posed_frames.h"
 #include "io/weights_file.h"
 #include "libps/scene/photo_depth.h"
 
@@ -24,7 +25,7 @@ std::optional<FeatureNetwork> PerceptualModel::features() const {
 }
 
 void complete_depth(View& view, const DepthModel& model, bool estimate) {
-  if (estimate || view.depth.empty() || cv::countNonZero(view.depth) == 0) {
+  if (estimate || !has_depth(view)) {
     view.depth = photo_depth(model.net, view.color, view.intrinsics, model.scale);
   } else {
     fill_holes(view, model.net, model.scale);

@@ -13,7 +13,11 @@ namespace fs = std::filesystem;
 namespace ps::apps {
 namespace {
 
-constexpr char kRgb[] = "rgb.safetensors";
+constexpr char kRgb[] = "rgb.safetensors", kNoOutpainter[] = "no-outpainter";
+
+bool outpaints(const std::string& method) {
+  return needs_networks(method) && method != kNoOutpainter;
+}
 
 fs::path rgb_weights(const std::string& weights) {
   std::error_code ignored;
@@ -31,12 +35,19 @@ std::vector<std::string> default_methods() {
 
 MethodModels::MethodModels(const std::string& weights, const std::vector<std::string>& methods,
                            const Context& context) {
-  if (!std::any_of(methods.begin(), methods.end(), needs_networks)) {
+  const auto has = [&](const char* name) {
+    return std::find(methods.begin(), methods.end(), name) != methods.end();
+  };
+  if (std::none_of(methods.begin(), methods.end(), outpaints)) {
     depth_ = std::make_unique<DepthModel>(load_depth_model(depth_weights(weights), context));
+    if (has(kNoOutpainter)) {
+      const fs::path file = weights_of(weights, "refine.safetensors");
+      refiner_ = std::make_unique<models::Refiner>(read_weights(file));
+    }
     return;
   }
   scene_ = std::make_unique<SceneModels>(weights, "both", context);
-  if (std::find(methods.begin(), methods.end(), "rgb") == methods.end()) return;
+  if (!has("rgb")) return;
   const fs::path file = rgb_weights(weights);
   rgb_autoencoder_ = std::make_unique<models::Autoencoder>(models::color_codes());
   rgb_pixel_cnn_ = std::make_unique<models::PixelCnn>(read_weights(file));
@@ -45,7 +56,10 @@ MethodModels::MethodModels(const std::string& weights, const std::vector<std::st
 
 MethodNetworks MethodModels::networks() const {
   MethodNetworks networks;
-  if (!scene_) return networks;
+  if (!scene_) {
+    networks.scene = {{nullptr, nullptr, refiner_.get(), {}}, &depth_->net, depth_->scale};
+    return networks;
+  }
   networks.scene = scene_->networks();
   networks.scorers = scene_->scorers();
   networks.rgb.autoencoder = rgb_autoencoder_.get();

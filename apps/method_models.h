@@ -20,7 +20,8 @@ class MethodModels {
  public:
   /// @param weights  as SceneModels takes them; those of `rgb` are rgb.safetensors in a folder,
   /// else what comes with the program
-  /// @param methods  of view_method_names(); only what these need is read
+  /// @param methods  of view_method_names(). Networks that outpaint are read where one of these
+  /// outpaints, the refiner for no-outpainter, those of `rgb` for it; depth always.
   /// Throws ps::Error as SceneModels does, and when the weights of `rgb` are missing.
   MethodModels(const std::string& weights, const std::vector<std::string>& methods,
                const Context& context);
@@ -30,7 +31,8 @@ class MethodModels {
 
  private:
   std::unique_ptr<SceneModels> scene_;
-  std::unique_ptr<DepthModel> depth_;  ///< where no method outpaints
+  std::unique_ptr<DepthModel> depth_;         ///< where no method outpaints
+  std::unique_ptr<models::Refiner> refiner_;  ///< likewise
   std::unique_ptr<models::Autoencoder> rgb_autoencoder_;
   std::unique_ptr<models::PixelCnn> rgb_pixel_cnn_;
 };

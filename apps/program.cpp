@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/program.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -116,6 +117,20 @@ CLI::Validator whole_in(std::uint64_t low, std::uint64_t high) {
     return "'" + text + "' is not right; expected a whole number from " + range;
   };
   return CLI::Validator(check, high < UINT64_MAX ? range : "");
+}
+
+CLI::Option* add_names(CLI::App& verb, const std::string& option, std::vector<std::string>& names,
+                       const std::string& help, const std::vector<std::string>& choices) {
+  CLI::Option* const added = verb.add_option(option, names, help)
+                                 ->delimiter(',')
+                                 ->allow_extra_args(false)
+                                 ->type_name("NAME,...")
+                                 ->check(CLI::IsMember(choices));
+  return added->check([added](const std::string& name) -> std::string {
+    const std::vector<std::string>& given = added->results();
+    if (std::count(given.begin(), given.end(), name) < 2) return "";
+    return name + " is given twice; expected each once";
+  });
 }
 
 int report_failure() noexcept try { throw; } catch (const Interrupted& interrupted) {

@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "apps/context.h"
 
@@ -21,6 +23,11 @@ CLI::Validator in_range(double low, double high);
 
 /// @brief Checks that an option is a whole number in [low, high]; CLI11 takes -1 for 2^64 - 1.
 CLI::Validator whole_in(std::uint64_t low, std::uint64_t high);
+
+/// @brief Adds an option that takes names with commas in between, each of `choices` and once at the
+/// most.
+CLI::Option* add_names(CLI::App& verb, const std::string& option, std::vector<std::string>& names,
+                       const std::string& help, const std::vector<std::string>& choices);
 
 /// The highest value of options without a natural bound.
 constexpr double kNoBound = 1e9;

@@ -16,12 +16,9 @@ constexpr double kPi = 3.14159265358979323846;
 }  // namespace
 
 void SceneArguments::add_view_options(CLI::App& verb) {
-  verb.add_option("--directions", directions,
-                  "Which of left, right, up, down, up-left, up-right, down-left, down-right")
-      ->type_name("NAME,...")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(CLI::IsMember(direction_names()));
+  add_names(verb, "--directions", directions,
+            "Which of left, right, up, down, up-left, up-right, down-left, down-right",
+            direction_names());
   verb.add_option("--range-horizontal", range_horizontal,
                   "How far the camera turns to the left and right: radians, or degrees as 34deg")
       ->type_name("ANGLE");
@@ -131,10 +128,6 @@ PlanOptions SceneArguments::plan() const {
   PlanOptions options;
   options.strategy = strategy_of(strategy);
   options.directions = directions;
-  for (auto d = directions.begin(); d != directions.end(); ++d) {
-    if (std::find(directions.begin(), d, *d) == d) continue;
-    throw CLI::ValidationError("--directions", *d + " is given twice; expected each once");
-  }
   options.views_per_direction = views_per_direction;
   options.range.range_horizontal = parse_angle(range_horizontal, "--range-horizontal");
   options.range.range_vertical = parse_angle(range_vertical, "--range-vertical");

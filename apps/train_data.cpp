@@ -18,6 +18,7 @@
 #include "libps/core/error.h"
 #include "libps/core/parallel.h"
 #include "libps/core/random.h"
+#include "libps/scene/room_view.h"
 #include "libps/train/room_examples.h"
 
 namespace fs = std::filesystem;
@@ -83,7 +84,7 @@ int write_rooms(const DataArguments& a, const Context& context) {
   const rooms::Furniture furniture(models);
   if (!models.empty()) options.furniture = &furniture;
   return write_shards(a, train::kRooms, a.rooms, kRoomsPerShard, context, [&](int i) {
-    return train::room_pairs(context.seed * 1000000 + static_cast<std::uint64_t>(i), options,
+    return train::room_pairs(room_number(context.seed, static_cast<std::uint64_t>(i)), options,
                              kPairsPerRoom);
   });
 }

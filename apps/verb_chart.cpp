@@ -65,7 +65,7 @@ std::vector<KnobChart> measured(const ChartKnobs& knobs, const ChartSamples& sam
 }
 
 void write_charts(OutputFolder& folder, const std::vector<KnobChart>& charts,
-                  const std::string& about) {
+                  const BootstrapOptions& bootstrap, const std::string& about) {
   std::vector<Image> pictures;
   for (const KnobChart& chart : charts) {
     throw_if_interrupted();
@@ -80,7 +80,8 @@ void write_charts(OutputFolder& folder, const std::vector<KnobChart>& charts,
   }
   folder.write("chart.png", [&](const Path& file) { write_image(file, grid_of(pictures, 2)); });
   folder.write("chart.csv", [&](const Path& file) { write_text(file, to_csv(charts)); });
-  folder.write("index.html", [&](const Path& file) { write_text(file, html_of(charts, about)); });
+  folder.write("index.html",
+               [&](const Path& file) { write_text(file, html_of(charts, bootstrap, about)); });
 }
 
 std::string about_line(const Json& machine, const ChartSamples& samples, const Context& context) {
@@ -104,7 +105,7 @@ void run_chart(const ChartArguments& a, const CLI::App& verb, const Context& con
   BootstrapOptions bootstrap;
   bootstrap.seed = context.seed;
   const std::vector<KnobChart> charts = measured(knobs, samples, bootstrap, context);
-  write_charts(folder, charts, about_line(machine, samples, context));
+  write_charts(folder, charts, bootstrap, about_line(machine, samples, context));
   Json report = {{"settings", settings_of(verb, context)},
                  {"machine", machine},
                  {"samples", samples.report},
@@ -129,11 +130,7 @@ void add_options(CLI::App& verb, ChartArguments& a) {
           "SVG and the scores of every sample")
       ->required()
       ->type_name("DIR");
-  verb.add_option("--knobs", a.knobs.names, "Some of them")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("NAME,...")
-      ->check(CLI::IsMember(knob_names()));
+  add_names(verb, "--knobs", a.knobs.names, "Some of them", knob_names());
   verb.add_option(
           "--size", a.size,
           "small: 6 pairs of views, within five minutes on two cores; full: 24 larger ones, "

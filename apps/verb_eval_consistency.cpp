@@ -25,10 +25,12 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
+std::vector<std::string> all_methods() { return {"support", "sequential", "independent"}; }
+
 struct EvalConsistencyArguments {
   FramesArguments frames;
   SceneArguments scene;  ///< ranges, directions, sampling and weights of it are used
-  std::vector<std::string> methods = {"support", "sequential", "independent"};
+  std::vector<std::string> methods = all_methods();
   bool estimate_depth = false;
   std::string lpips;
   std::string output;
@@ -145,11 +147,7 @@ void add_eval_consistency(CLI::App& eval, const Context& context) {
       "Below each mean its 95 % bootstrap interval over rooms, or over twentieths of a walk.");
   auto a = std::make_shared<EvalConsistencyArguments>();
   a->frames.add_to(*verb);
-  verb->add_option("--methods", a->methods, "Of support, sequential, independent")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("NAME,...")
-      ->check(CLI::IsMember({"support", "sequential", "independent"}));
+  add_names(*verb, "--methods", a->methods, "Of support, sequential, independent", all_methods());
   a->scene.add_view_options(*verb);
   a->scene.add_outpaint_options(*verb);
   verb->add_flag("--estimate-depth", a->estimate_depth, "Look at no true depth of the frames");

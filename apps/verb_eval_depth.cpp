@@ -45,9 +45,6 @@ std::vector<double> scores_of(const Depth& depth, const Depth& truth) {
   return values;
 }
 
-/// @return true if some pixel has a depth
-bool has_depth(const View& view) { return !view.depth.empty() && cv::countNonZero(view.depth) > 0; }
-
 DepthBaselines learnt_baselines(const ChosenFrames& frames, const Context& context) {
   DepthBaselines baselines;
   bool any = false;

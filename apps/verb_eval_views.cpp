@@ -140,9 +140,10 @@ class ViewsRun {
   PairPictures measure(const FramePair& pair, Progress& progress) {
     const std::size_t source = frames_.chosen[pair.source], target = frames_.chosen[pair.target];
     View input = frames_.all.load(source);
-    const View truth = frames_.all.load(target);
+    View truth = frames_.all.load(target);
     // By true depth, where there is one.
-    const bool measured = !input.depth.empty();
+    if (!has_depth(truth)) truth.depth.release();
+    const bool measured = has_depth(input);
     Visibility visibility;
     if (measured) visibility = true_visibility(input, truth);
     complete_depth(input, models_.depth(), a_.estimate_depth);
@@ -241,11 +242,7 @@ void add_eval_views(CLI::App& eval, const Context& context) {
       "Below each mean its 95 % bootstrap interval over rooms, or over twentieths of a walk.");
   auto a = std::make_shared<EvalViewsArguments>();
   a->frames.add_to(*verb);
-  verb->add_option("--methods", a->methods, "Which of them")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("NAME,...")
-      ->check(CLI::IsMember(view_method_names()));
+  add_names(*verb, "--methods", a->methods, "Which of them", view_method_names());
   add_pair_options(*verb, *a);
   a->scene.add_sampling_options(*verb);
   verb->add_flag("--estimate-depth", a->estimate_depth, "Show the methods no true depth");

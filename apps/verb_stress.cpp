@@ -105,11 +105,7 @@ void add_stress(CLI::App& program, const Context& context) {
       "if any is not, after everything is written.");
   auto a = std::make_shared<StressArguments>();
   verb->add_option("-o,--output", a->output, "Folder")->required()->type_name("DIR");
-  verb->add_option("--axes", a->axes, "Of them all: these alone")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->type_name("NAME,...")
-      ->check(CLI::IsMember(axis_names()));
+  add_names(*verb, "--axes", a->axes, "Of them all: these alone", axis_names());
   verb->add_option("--size", a->size, "small = minutes, full = a night")
       ->type_name("SIZE")
       ->check(CLI::IsMember({"small", "full"}));

@@ -49,6 +49,10 @@ PosedFrames open_rgbd(const fs::path& path, double depth_scale) {
 
 }  // namespace
 
+bool has_depth(const View& frame) {
+  return !frame.depth.empty() && cv::countNonZero(frame.depth) > 0;
+}
+
 PosedFrames frames_of(const std::string& layout, std::vector<FrameFiles> files,
                       const DepthCode& code, const std::string& where) {
   if (files.empty()) throw Error(where, "no frame of " + layout + " is whole", "one at least");

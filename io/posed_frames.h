@@ -31,6 +31,9 @@ struct PosedFrames {
   std::function<View(std::size_t)> load;
 };
 
+/// @return whether any pixel of a frame has a depth
+bool has_depth(const View& frame);
+
 /// @brief Opens frames without loading them; the layout is told from what is there:
 ///
 /// - an RGB-D folder, as io/rgbd_folder.h has it;

@@ -12,15 +12,14 @@
 namespace ps {
 namespace {
 
-constexpr int kViews = 4;                      ///< of each room
-constexpr std::uint64_t kMostRooms = 1000000;  ///< of one seed, as `train data` numbers them
+constexpr int kViews = 4;                              ///< of each room
 constexpr float kMostTurned = 1.047f, kMostMoved = 1;  ///< radians, metres
 
 struct RoomSource {
   std::uint64_t seed = 0;
   std::size_t count = 0;
 
-  std::uint64_t room_seed(std::size_t frame) const { return seed * kMostRooms + frame / kViews; }
+  std::uint64_t room_seed(std::size_t frame) const { return room_number(seed, frame / kViews); }
 };
 
 RoomSource parse(const std::string& data) {
@@ -29,8 +28,8 @@ RoomSource parse(const std::string& data) {
   if (second != std::string_view::npos) {
     const auto seed = to_number<std::uint64_t>(text.substr(first + 1, second - first - 1));
     const auto count = to_number<std::uint64_t>(text.substr(second + 1));
-    if (seed && count && *seed<UINT64_MAX / kMostRooms&& * count> 0 &&
-        *count <= kViews * kMostRooms) {
+    if (seed && count && *seed<UINT64_MAX / kRoomsOfSeed&& * count> 0 &&
+        *count <= kViews * kRoomsOfSeed) {
       return {*seed, static_cast<std::size_t>(*count)};
     }
   }

@@ -33,15 +33,24 @@ void check_same(const Scores& a, const Scores& b, const std::string& method) {
   throw Error(method, "was tried on other samples than the others", "the same in the same order");
 }
 
-/// Takes out samples that some method has no score of.
+bool any_number(const Scores& scores) {
+  return std::any_of(scores.values.begin(), scores.values.end(),
+                     [](double value) { return !std::isnan(value); });
+}
+
+/// Takes out samples that some method has no score of; methods without any score do not count.
 void keep_complete(std::vector<Scores>& all) {
   std::vector<bool> complete(all.front().values.size(), true);
   for (const Scores& scores : all) {
-    for (std::size_t i = 0; i < complete.size(); ++i) {
+    for (std::size_t i = 0; any_number(scores) && i < complete.size(); ++i) {
       complete[i] = complete[i] && !std::isnan(scores.values[i]);
     }
   }
   for (Scores& scores : all) {
+    if (!any_number(scores)) {
+      scores = {};
+      continue;
+    }
     Scores kept;
     for (std::size_t i = 0; i < complete.size(); ++i) {
       if (!complete[i]) continue;
@@ -53,25 +62,42 @@ void keep_complete(std::vector<Scores>& all) {
   }
 }
 
+/// Takes away what is easy or hard for all, as within_samples() says; means stay.
+void take_away_samples(const std::vector<Scores*>& all) {
+  const auto methods = static_cast<double>(all.size());
+  std::vector<double> of_samples(all.front()->values.size(), 0);
+  for (const Scores* scores : all) {
+    for (std::size_t i = 0; i < of_samples.size(); ++i)
+      of_samples[i] += scores->values[i] / methods;
+  }
+  const double grand = mean(of_samples), stretch = std::sqrt(methods / (methods - 1));
+  for (Scores* scores : all) {
+    const double middle = mean(scores->values);
+    for (std::size_t i = 0; i < of_samples.size(); ++i) {
+      const double change = scores->values[i] - of_samples[i];
+      scores->values[i] = middle + stretch * (change - (middle - grand));
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::size_t> pareto_front(const std::vector<TradeoffPoint>& points) {
-  for (const TradeoffPoint& point : points) {
-    if (!std::isnan(point.seconds.value) && !std::isnan(point.accuracy.value)) continue;
-    throw Error(point.knob + " " + point.setting, "its seconds or accuracy are no number",
-                "a point that was measured");
-  }
-  const auto beats = [](const TradeoffPoint& a, const TradeoffPoint& b) {
-    const double s = a.seconds.value, t = b.seconds.value;
-    const double p = a.accuracy.value, q = b.accuracy.value;
-    return s <= t && p >= q && (s < t || p > q);
+  const auto measured = [](const TradeoffPoint& point) {
+    return !std::isnan(point.seconds.value) && !std::isnan(point.accuracy.value);
   };
+  const auto beats =  // NaN beats nothing
+      [](const TradeoffPoint& a, const TradeoffPoint& b) {
+        const double s = a.seconds.value, t = b.seconds.value;
+        const double p = a.accuracy.value, q = b.accuracy.value;
+        return s <= t && p >= q && (s < t || p > q);
+      };
   std::vector<std::size_t> front;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool beaten = std::any_of(points.begin(), points.end(), [&](const TradeoffPoint& other) {
       return beats(other, points[i]);
     });
-    if (!beaten) front.push_back(i);
+    if (!beaten && measured(points[i])) front.push_back(i);
   }
   std::stable_sort(front.begin(), front.end(), [&](std::size_t a, std::size_t b) {
     return points[a].seconds.value < points[b].seconds.value;
@@ -88,22 +114,17 @@ std::vector<Interval> within_samples(const ScoreTable& table, std::size_t column
   }
   if (all.empty()) return {};
   keep_complete(all);
-  const auto methods = static_cast<double>(all.size());
-  std::vector<double> of_samples(all.front().values.size(), 0);
-  for (const Scores& scores : all) {
-    for (std::size_t i = 0; i < of_samples.size(); ++i) of_samples[i] += scores.values[i] / methods;
-  }
-  const double grand = mean(of_samples);
-  const double stretch = all.size() > 1 ? std::sqrt(methods / (methods - 1)) : 1;
-  std::vector<Interval> intervals;
+  std::vector<double> means;
+  std::vector<Scores*> compared;
   for (Scores& scores : all) {
-    const double middle = mean(scores.values);
-    for (std::size_t i = 0; i < of_samples.size() && all.size() > 1; ++i) {
-      const double change = scores.values[i] - of_samples[i];
-      scores.values[i] = middle + stretch * (change - (middle - grand));
-    }
-    intervals.push_back(bootstrap_mean(scores.values, scores.groups, options));
-    intervals.back().value = middle;
+    means.push_back(mean(scores.values));
+    if (!scores.values.empty()) compared.push_back(&scores);
+  }
+  if (compared.size() > 1) take_away_samples(compared);
+  std::vector<Interval> intervals;
+  for (std::size_t m = 0; m < all.size(); ++m) {
+    intervals.push_back(bootstrap_mean(all[m].values, all[m].groups, options));
+    intervals.back().value = means[m];
   }
   return intervals;
 }

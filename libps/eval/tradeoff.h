@@ -19,9 +19,9 @@ struct TradeoffPoint {
 };
 
 /// @brief The points that no other one beats: none is at least as fast and as accurate, and more so
-/// in one of the two. Equal points do not beat each other.
+/// in one of the two. Equal points do not beat each other; those whose seconds or accuracy are NaN
+/// beat nothing and are left out.
 /// @return indices by rising seconds; of equal ones the first comes first
-/// Throws ps::Error when seconds or accuracy are NaN.
 std::vector<std::size_t> pareto_front(const std::vector<TradeoffPoint>& points);
 
 /// @brief Intervals of means for comparing methods that were tried on the same samples: what is
@@ -29,7 +29,8 @@ std::vector<std::size_t> pareto_front(const std::vector<TradeoffPoint>& points);
 /// methods, which is then moved to the method's mean and stretched by sqrt(k / (k - 1)), k methods
 /// (Cousineau, "Confidence intervals in within-subject designs", 2005; Morey, 2008), and
 /// bootstrapped by groups.
-/// @return in the order of table.methods(); of samples where some method has NaN nothing is taken
+/// @return in the order of table.methods(); of samples where some method has NaN nothing is taken,
+/// but a method that has nothing but NaN has an interval of NaN, and takes no sample from others
 /// Throws ps::Error when the methods were not tried on the same samples in the same order.
 std::vector<Interval> within_samples(const ScoreTable& table, std::size_t column,
                                      const BootstrapOptions& options = {});

@@ -1,12 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "libps/scene/room_view.h"
 
+#include <algorithm>
 #include <cstring>
+#include <string>
+
+#include "libps/core/error.h"
 
 namespace ps {
 namespace {
 
 using Rows = Eigen::Matrix<float, 3, 4, Eigen::RowMajor>;
+
+void check_sizes(const rooms::Shot& shot, const rooms::Camera& camera) {
+  const std::size_t pixels = static_cast<std::size_t>(std::max(shot.width, 0)) *
+                             static_cast<std::size_t>(std::max(shot.height, 0));
+  const bool fits = pixels > 0 && shot.color.size() == 3 * pixels && shot.depth.size() == pixels &&
+                    camera.width == shot.width && camera.height == shot.height;
+  if (fits) return;
+  throw Error("room view",
+              "a shot of " + std::to_string(shot.width) + "x" + std::to_string(shot.height) +
+                  " has " + std::to_string(shot.color.size()) + " colours and " +
+                  std::to_string(shot.depth.size()) + " depths, its camera " +
+                  std::to_string(camera.width) + "x" + std::to_string(camera.height),
+              "all of one size");
+}
 
 }  // namespace
 
@@ -32,6 +50,7 @@ rooms::Camera room_camera(const Intrinsics& lens, const Pose& world_from_cam) {
 }
 
 View view_of(const rooms::Shot& shot, const rooms::Camera& camera) {
+  check_sizes(shot, camera);
   const cv::Size size(shot.width, shot.height);
   View view;
   view.color.create(size);

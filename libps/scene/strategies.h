@@ -49,8 +49,13 @@ struct ShownScene {
 /// @brief Makes all views of a plan by its strategy (PixelSynth, section 4.3), from one input:
 /// `support` splats and refines the accumulated cloud into each; the others show what was
 /// outpainted in each.
-/// @param plan      of plan_scene() from the input's pose
+/// @param input     with depth
+/// @param plan      of plan_scene() from the input's pose; 65535 views to outpaint at the most
 /// @param strategy  that the plan was made for
+/// @return all views of the plan, each with a picture. A view that options.outpaint.progress
+/// stopped (it returned false) adds nothing and is rendered from the cloud, with report.best -1;
+/// the next one is begun.
+/// Throws ps::Error as SceneBuilder and ViewRenderer do, and whatever progress throws.
 ShownScene show_scene(const View& input, const std::vector<ViewPlan>& plan, Strategy strategy,
                       const SceneNetworks& networks, const SceneOptions& options,
                       const ViewRendererOptions& renderer);

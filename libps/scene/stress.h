@@ -61,8 +61,9 @@ double breaking_point(const Axis& axis, const std::vector<double>& scores);
 
 /// @brief Steps where a curve gets worse at once as it does nowhere else: by more than four times
 /// the median of its changes, and by more than a third of all that it loses.
-/// @param others  curves of methods that share the input alone: where one of them falls by half as
-/// much, it is the input that jumps
+/// @param scores  one for each of axis.values, one at least
+/// @param others  curves of methods that share the input alone, each as long as `scores`: where one
+/// of them falls by half as much, it is the input that jumps
 /// @return indices of the values that it falls towards; steps from or to what is not finite are
 /// none
 std::vector<std::size_t> jumps(const Axis& axis, const std::vector<double>& scores,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "apps/chart_axis.h"
 #include "libps/core/error.h"
@@ -126,6 +127,71 @@ TEST(ChartPicture, labels_of_dots_that_are_near_do_not_cover_each_other) {
     places.push_back(place);
   }
   EXPECT_EQ(places.size(), 5u);
+}
+
+/// As of a stress axis: many methods, and a limit whose name is a sentence.
+ChartPicture many_curves() {
+  ChartPicture picture;
+  picture.x_name = "metres";
+  picture.y_name = "PSNR of what is not seen, dB";
+  for (const char* name :
+       {"ours", "ours, without free space", "every frame outpainted in turn", "Poisson meshing",
+        "nothing outpainted, the refiner fills in", "Navier-Stokes inpainting of every view",
+        "truncated signed distances", "broken where PSNR of what is not seen is under 20 dB"}) {
+    const double y = static_cast<double>(picture.curves.size());
+    picture.curves.push_back({name, {1, 2, 3}, {y, y + 1, y}});
+  }
+  picture.curves.back().dots = false;
+  return picture;
+}
+
+/// Where words of the legend are: those between the title and the plot.
+std::vector<cv::Rect2d> legend_of(const Drawing& drawing, const ChartPicture& picture) {
+  std::vector<cv::Rect2d> places;
+  for (const Drawing::Text& text : drawing.texts) {
+    const bool named = std::any_of(picture.curves.begin(), picture.curves.end(),
+                                   [&](const Curve& c) { return c.name == text.words; });
+    if (!named && text.words.find("...") == std::string::npos) continue;
+    places.emplace_back(text.at.x, text.at.y - 10, width_of(text.words, text.size), 12);
+  }
+  return places;
+}
+
+TEST(ChartPicture, legends_of_many_curves_wrap_above_the_plot_and_end_inside) {
+  const ChartPicture picture = many_curves();
+  const Drawing drawing = drawing_of(picture);
+  const std::vector<cv::Rect2d> places = legend_of(drawing, picture);
+  ASSERT_EQ(places.size(), 8u);
+  double highest_dot = picture.height, lowest_words = 0;
+  for (const Drawing::Line& line : drawing.lines) {
+    if (line.points.size() == 3 && line.color != 0x222222) {
+      for (const cv::Point2d& p : line.points) highest_dot = std::min(highest_dot, p.y);
+    }
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    EXPECT_LE(places[i].br().x, picture.width) << i;
+    lowest_words = std::max(lowest_words, places[i].br().y);
+    for (std::size_t j = 0; j < i; ++j) EXPECT_EQ((places[i] & places[j]).area(), 0) << i;
+  }
+  EXPECT_GT(lowest_words, places.front().br().y);
+  EXPECT_LT(lowest_words, highest_dot);
+  std::set<unsigned> colors;
+  for (const Drawing::Line& line : drawing.lines) {
+    if (line.points.size() == 3 && line.color != 0x222222) colors.insert(line.color);
+  }
+  EXPECT_EQ(colors.size(), 8u);
+}
+
+TEST(ChartPicture, names_wider_than_a_line_are_shortened_and_words_must_leave_room) {
+  ChartPicture picture = many_curves();
+  picture.curves[3].name = std::string(200, 'w');
+  const Drawing drawing = drawing_of(picture);
+  const std::vector<cv::Rect2d> places = legend_of(drawing, picture);
+  ASSERT_EQ(places.size(), 8u);
+  for (const cv::Rect2d& place : places) EXPECT_LE(place.br().x, picture.width);
+  picture.width = 200;
+  picture.height = 150;
+  EXPECT_THROW(drawing_of(picture), Error);
 }
 
 TEST(ChartPicture, refuses_vectors_of_several_lengths_and_tiny_pictures) {

@@ -4,7 +4,7 @@ app_test(no_verb_prints_help [=[
   works
   prints 'Subcommands'
   prints 'fuse']=])
-app_test(every_verb_has_help [=[for v in scene depth fuse render view chart "probe splat" "probe depth" "probe vq-encode" "probe vq-decode" "probe pixelcnn" "probe refine" "probe discriminator" "probe lpips" "probe classifier" weights "weights info" "weights convert"; do works $v --help; prints Options; done]=])
+app_test(every_verb_has_help [=[for v in scene depth fuse render view chart stress eval "eval depth" "eval cloud" "eval consistency" "eval views" "eval ab" "probe splat" "probe depth" "probe vq-encode" "probe vq-decode" "probe pixelcnn" "probe refine" "probe discriminator" "probe lpips" "probe classifier" weights "weights info" "weights convert"; do works $v --help; prints Options; done]=])
 app_test(version_is_printed [=[
   works --version
   prints '^pixelsynth [0-9]+[.][0-9]+[.][0-9]+$']=])
@@ -33,6 +33,13 @@ app_test(options_that_leave_nothing_are_named_with_what_would_be_right [=[
   fails 2 'min-depth: 5 is more than --max-depth 2' scene $S/photo.png --depth $S/depth.png --no-outpaint -o a --min-depth 5 --max-depth 2
   fails 1 'frames: no frame is in 100:.* within 0:6' fuse $S/walk -o a.ply --frames 100:
   fails 1 'no pixel can be lifted.* range' fuse $S/walk -o a.ply --min-depth 50]=])
+app_test(names_given_twice_are_wrong_usage [=[
+  twice="is given twice; expected each once"
+  fails 2 "knobs: radius $twice" chart -o c --knobs radius,budget,radius
+  fails 2 "methods: copy $twice" eval views $S/walk --methods copy,copy
+  fails 2 "methods: support $twice" eval consistency $S/walk --methods support,support
+  fails 2 "axes: splat-narrow $twice" stress -o s --axes splat-narrow --axes splat-narrow
+  fails 2 "directions: left $twice" scene $S/photo.png -o s --directions left,up,left]=])
 app_test(odd_sizes_and_ranges_are_wrong_usage [=[
   for s in 640 0x10 10x0 axb 10x-5 99999x10 x; do fails 2 'size' render $S/mixed.ply -o a.png --size $s; done
   for f in a:b 5:3 1:2:3 nan:; do fails 2 'frames' fuse $S/walk -o a.ply --frames $f; done

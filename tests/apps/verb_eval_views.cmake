@@ -17,6 +17,24 @@ app_test(eval_views_scores_what_needs_no_networks [=[
   writes p/input/pair_00001.png p/truth/pair_00001.png p/pair_00000.png p/pair_00001.png
   cmp p/copy/pair_00000.png p/input/pair_00000.png
   ! cmp -s p/nearest/pair_00000.png p/truth/pair_00000.png || complain "the truth is shown"]=])
+app_test(eval_views_takes_depth_that_is_zero_everywhere_for_none [=[
+  args="--frames 0:1 --min-rotation 0 --pairs 1 --methods copy"
+  cp -r $S/walk w
+  for d in w/depth/*; do
+    cp $S/zero.png $d
+    works eval views w $args -o v.json
+    grep -Eq '^copy,"PSNR visible, dB",[0-9.]+,' v.csv || complain "nothing is visible without $d"
+    grep -q '"visible_share": 0.[0-9]*[1-9]' v.json
+  done]=])
+app_test(eval_views_reads_the_networks_that_its_methods_need "
+  mkdir w
+  cp $S/depth.safetensors w
+  plain='eval views '$S'/walk --frames 0:1 --min-rotation 0 --pairs 1 --weights w'
+  works $plain --methods copy
+  fails 1 'w/refine.safetensors' $plain --methods no-outpainter
+  cp ${PROJECT_SOURCE_DIR}/data/weights/refine.safetensors w
+  works $plain --methods no-outpainter,copy
+  fails 1 'w/(vqvae|pixelcnn).safetensors' $plain --methods one-completion")
 app_test(eval_views_gives_the_same_bytes_again_whatever_the_threads [=[
   again="$S/walk --min-rotation 0 --pairs 1 --samples 1 --methods ours,telea"
   works --threads 1 eval views $again -o a.json --pictures a

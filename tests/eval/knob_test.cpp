@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "libps/core/error.h"
@@ -27,7 +28,9 @@ Knob counted(std::vector<std::size_t>* order) {
   return knob;
 }
 
-KnobSample sample(std::size_t i) { return {std::to_string(i), static_cast<int>(i), {}, {}, {}, {}}; }
+KnobSample sample(std::size_t i) {
+  return {std::to_string(i), static_cast<int>(i), {}, {}, {}, {}};
+}
 
 TEST(Knob, settings_take_turns_after_a_warm_up_and_the_least_time_counts) {
   std::vector<std::size_t> order;
@@ -66,6 +69,20 @@ TEST(Knob, points_are_in_the_order_of_settings_with_changes_against_the_default)
   EXPECT_EQ(points[1].accuracy.value, 10.5);
   EXPECT_EQ(points[1].accuracy.low, 10.5);  // samples differ alike in both
   EXPECT_EQ(points[1].change.high, 0);
+}
+
+TEST(Knob, a_setting_that_was_never_scored_is_a_point_off_the_front) {
+  std::vector<std::size_t> order;
+  const Knob knob = counted(&order);
+  ScoreTable scored = measure({knob}, 2, sample)[0].table, table(scored.columns());
+  for (ScoreRow row : scored.rows()) {
+    if (row.method == "small") row.values[1] = std::numeric_limits<double>::quiet_NaN();
+    table.add(row);
+  }
+  const auto points = points_of(knob, table);
+  EXPECT_TRUE(std::isnan(points[0].accuracy.value));
+  EXPECT_EQ(points[1].accuracy.value, 10.5);
+  EXPECT_EQ(pareto_front(points), std::vector<std::size_t>{1});
 }
 
 TEST(Knob, without_one_default_or_an_accuracy_is_refused) {

@@ -40,10 +40,11 @@ TEST(ParetoFront, equal_points_do_not_beat_each_other) {
   EXPECT_EQ(pareto_front({point(1, 10), point(1, 10), point(0.5, 1)}), (Indices{2, 0, 1}));
 }
 
-TEST(ParetoFront, takes_infinite_accuracy_and_refuses_nan) {
+TEST(ParetoFront, takes_infinite_accuracy_and_leaves_out_nan) {
   EXPECT_EQ(pareto_front({point(1, 10), point(2, kInfinity)}), (Indices{0, 1}));
-  EXPECT_THROW(pareto_front({point(1, 10), point(kNaN, 1)}), Error);
-  EXPECT_THROW(pareto_front({point(1, kNaN)}), Error);
+  EXPECT_EQ(pareto_front({point(kNaN, 90), point(1, 10), point(0, kNaN), point(2, 20)}),
+            (Indices{1, 3}));
+  EXPECT_EQ(pareto_front({point(1, kNaN)}), Indices{});
 }
 
 /// Three methods on samples of very different difficulty: the second is better by 1, the third by
@@ -97,6 +98,21 @@ TEST(WithinSamples, leaves_out_samples_that_some_method_has_no_score_of) {
   EXPECT_EQ(intervals[0].value, 1);
   EXPECT_EQ(intervals[1].value, 2);
   EXPECT_EQ(intervals[0].samples, 1u);
+}
+
+TEST(WithinSamples, a_method_without_any_score_takes_no_samples_from_the_others) {
+  ScoreTable with = hard_and_easy(0.1), without({{"PSNR", "dB", true}});
+  for (const ScoreRow& row : with.rows()) without.add(row);
+  for (int i = 0; i < 30; ++i) with.add({"d", std::to_string(i), i, {kNaN}});
+  const std::vector<Interval> all = within_samples(with, 0), three = within_samples(without, 0);
+  ASSERT_EQ(all.size(), 4u);
+  for (std::size_t m = 0; m < 3; ++m) {
+    EXPECT_EQ(all[m].value, three[m].value);
+    EXPECT_EQ(all[m].low, three[m].low);
+    EXPECT_EQ(all[m].high, three[m].high);
+  }
+  EXPECT_TRUE(std::isnan(all[3].value) && std::isnan(all[3].low) && std::isnan(all[3].high));
+  EXPECT_EQ(all[3].samples, 0u);
 }
 
 TEST(WithinSamples, refuses_methods_of_other_samples) {

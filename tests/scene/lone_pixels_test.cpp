@@ -24,6 +24,9 @@ TEST(LonePixels, are_not_found_in_empty_or_sparse_depth) {
   sparse(4, 4) = 1;
   sparse(4, 5) = 2;
   EXPECT_EQ(cv::countNonZero(lone_pixels(sparse)), 0);
+  sparse(5, 4) = sparse(5, 5) = 4;  // now each has three known neighbours
+  EXPECT_TRUE(lone_pixels(sparse)(4, 4) && lone_pixels(sparse)(4, 5));
+  EXPECT_TRUE(lone_pixels(Depth()).empty());
 }
 
 }  // namespace
