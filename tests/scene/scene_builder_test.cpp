@@ -10,6 +10,7 @@
 #include "libps/eval/image_metrics.h"
 #include "libps/geometry/point.h"
 #include "libps/scene/camera_path.h"
+#include "libps/scene/strategies.h"
 #include "libps/scene/view_renderer.h"
 #include "tests/support/box_world.h"
 #include "tests/support/random_networks.h"
@@ -125,6 +126,25 @@ TEST(SceneBuilder, stops_when_told_to_and_the_cloud_stays) {
   EXPECT_TRUE(support.view.color.empty());
   EXPECT_EQ(scene.add(support, 1).added, 0u);
   EXPECT_EQ(scene.cloud().size(), before);
+}
+
+TEST(ShowScene, views_whose_outpainting_was_stopped_are_of_the_cloud_alone) {
+  SceneOptions options = few_samples();
+  options.outpaint.progress = [](double) { return false; };
+  const View input = input_view();
+  for (const Strategy strategy : {Strategy::support, Strategy::sequential, Strategy::independent}) {
+    PlanOptions plan;
+    plan.strategy = strategy;
+    plan.directions = {"left"};
+    ShownScene shown = show_scene(input, plan_scene(input.world_from_cam, plan), strategy,
+                                  random_networks().all(), options, {});
+    EXPECT_EQ(outpainted_in(shown.scene.cloud()), 0u);
+    ASSERT_FALSE(shown.views.empty());
+    for (const ShownView& view : shown.views) {
+      EXPECT_FALSE(view.image.empty()) << view.plan.name;
+      EXPECT_EQ(view.report.best, -1);
+    }
+  }
 }
 
 TEST(SceneBuilder, a_tiny_photo_leaves_no_holes_in_its_own_view) {
