@@ -8,6 +8,7 @@
 
 #include "apps/chart_picture.h"
 #include "apps/contact_sheet.h"
+#include "apps/score_report.h"
 #include "io/photo.h"
 
 namespace ps::apps {
@@ -19,10 +20,17 @@ constexpr double kTie = 1.02;  ///< steps are too far apart to tell less
 std::string number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", value);
-  return std::isinf(value) ? "none" : std::isnan(value) ? "nan" : text;
+  return text;
 }
 
-Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+/// Of where a method breaks; "none" = it never does.
+std::string breaks(const stress::Curve& curve) {
+  return std::isinf(curve.breaks) ? "none" : number(curve.breaks);
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+  return text + std::string(width - std::min(width, text.size()), ' ');
+}
 
 Image sheet_at(const stress::Axis& axis, const stress::AxisResult& result, std::size_t step) {
   std::vector<SheetTile> tiles;
@@ -64,7 +72,7 @@ ChartPicture chart_of(const stress::Axis& axis, const stress::AxisResult& result
   const std::vector<double> ends = {
       axis.values.front() > 0 || !chart.log_x ? axis.values.front() : axis.values[1],
       axis.values.back()};
-  Curve limit = {stress::criterion_of(axis), ends, {axis.limit, axis.limit}};
+  Curve limit = {"broken where " + stress::criterion_of(axis), ends, {axis.limit, axis.limit}};
   limit.dots = false;
   chart.curves.push_back(limit);
   return chart;
@@ -104,11 +112,9 @@ void write_axis_pictures(OutputFolder& out, StressRow& row) {
 std::string breaking_table(const std::vector<StressRow>& rows) {
   std::string text;
   for (const StressRow& row : rows) {
-    char name[96];
-    std::snprintf(name, sizeof name, "%-16s %-18s", row.axis.name.c_str(), row.axis.unit.c_str());
-    text += name;
+    text += padded(row.axis.name, 16) + " " + padded(row.axis.unit, 18);
     for (const stress::Curve& curve : row.result.curves) {
-      text += "  " + curve.method + " " + number(curve.breaks);
+      text += "  " + curve.method + " " + breaks(curve);
     }
     std::string by;
     text += beaten(row, &by) ? "  *\n" : "\n";
@@ -123,11 +129,10 @@ std::string stress_markdown(const std::vector<StressRow>& rows) {
       "|\n|---|---|---|---|---|\n";
   for (const StressRow& row : rows) {
     const auto& curves = row.result.curves;
-    text += "| " + row.axis.name + " | " + row.axis.unit + " | " +
-            stress::criterion_of(row.axis).substr(13) + " | **" + number(curves[0].breaks) +
-            "** | ";
+    text += "| " + row.axis.name + " | " + row.axis.unit + " | " + stress::criterion_of(row.axis) +
+            " | **" + breaks(curves[0]) + "** | ";
     for (std::size_t i = 1; i < curves.size(); ++i) {
-      text += (i > 1 ? ", " : "") + curves[i].method + " " + number(curves[i].breaks);
+      text += (i > 1 ? ", " : "") + curves[i].method + " " + breaks(curves[i]);
     }
     text += " |\n";
   }
@@ -149,8 +154,8 @@ std::string stress_markdown(const std::vector<StressRow>& rows) {
           "\n## Axes\n";
   for (const StressRow& row : rows) {
     const std::string& name = row.axis.name;
-    text += "\n### " + name + "\n" + row.axis.what + "; " + stress::criterion_of(row.axis) +
-            ".\n\n![curves](" + name + ".png)\n";
+    text += "\n### " + name + "\n" + row.axis.what + "; broken where " +
+            stress::criterion_of(row.axis) + ".\n\n![curves](" + name + ".png)\n";
     const std::size_t first = row.result.curves[0].first_broken(row.axis);
     if (first > 0) text += "![just before](" + name + "-before.png)\n";
     if (first < row.axis.values.size()) text += "![just after](" + name + "-after.png)\n";
@@ -165,10 +170,10 @@ Json to_json(const std::vector<StressRow>& rows) {
     for (const stress::Curve& curve : row.result.curves) {
       Json scores = Json::array(), refused = Json::object();
       for (const stress::Step& step : curve.steps) {
-        scores.push_back(finite_or_null(step.score));
+        scores.push_back(json_number(step.score));
         if (!step.refused.empty()) refused[number(step.value)] = step.refused;
       }
-      methods[curve.method] = {{"breaks", finite_or_null(curve.breaks)}, {"scores", scores}};
+      methods[curve.method] = {{"breaks", json_number(curve.breaks)}, {"scores", scores}};
       if (!refused.empty()) methods[curve.method]["refused"] = refused;
     }
     Json jumps = Json::array(), violations = Json::array();
@@ -195,10 +200,8 @@ std::string to_csv(const std::vector<StressRow>& rows) {
   for (const StressRow& row : rows) {
     for (const stress::Curve& curve : row.result.curves) {
       for (const stress::Step& step : curve.steps) {
-        char line[160];
-        std::snprintf(line, sizeof line, "%s,\"%s\",%.6g,%.6g\n", row.axis.name.c_str(),
-                      curve.method.c_str(), step.value, step.score);
-        text += line;
+        text += csv_text(row.axis.name) + "," + csv_text(curve.method) + "," +
+                csv_number(step.value) + "," + csv_number(step.score) + "\n";
       }
     }
   }

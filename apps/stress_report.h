@@ -28,9 +28,11 @@ std::string breaking_table(const std::vector<StressRow>& rows);
 /// where ours is not the last to break, and violations. Markdown.
 std::string stress_markdown(const std::vector<StressRow>& rows);
 
+/// @return {AXIS: {..., methods: {METHOD: {breaks, scores}}}}, numbers as json_number() has them:
+/// "inf" = it never breaks, null = no score
 Json to_json(const std::vector<StressRow>& rows);
 
-/// @return axis,method,value,score
+/// @return axis,method,value,score; numbers as csv_number() has them
 std::string to_csv(const std::vector<StressRow>& rows);
 
 }  // namespace ps::apps

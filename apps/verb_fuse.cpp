@@ -8,13 +8,13 @@
 #include <system_error>
 
 #include "apps/frame_list.h"
+#include "apps/fuse_report.h"
 #include "apps/interrupt.h"
 #include "apps/lift_arguments.h"
 #include "apps/output.h"
 #include "apps/program.h"
 #include "apps/progress.h"
 #include "apps/report.h"
-#include "apps/scene_report.h"
 #include "io/cloud_file.h"
 #include "io/intrinsics_file.h"
 #include "io/trajectory.h"
@@ -154,17 +154,6 @@ void write_all(const FuseArguments& a, const Cloud& cloud, const FrameList& fram
   write_cloud(output, cloud, up_axis(world_from_cams(frames)), a.compress);
 }
 
-Json report_of(const FuseReport& fused, const FrameList& frames, const Cloud& cloud) {
-  Json report = summary_of(cloud);
-  report["views"] = fused.views;
-  report["without_depth"] = fused.empty;
-  report["held_out"] = frames.held_out.size();
-  report["pixels"] = to_json(fused.pixels);
-  report["contradicted"] = fused.contradicted;
-  report["seconds"] = {{"load", fused.load_seconds}, {"add", fused.add_seconds}};
-  return report;
-}
-
 /// All that the command line alone can tell. @return the arguments, with what follows from others
 FuseArguments resolved(const FuseArguments& given) {
   FuseArguments a = given;
@@ -205,8 +194,7 @@ FrameStudy studied(const ViewSource& source, const Context& context) {
                        }});
 }
 
-Cloud fuse_frames(const FuseArguments& a, const FrameList& frames, const Context& context,
-                  FuseReport* report) {
+Fused fuse_frames(const FuseArguments& a, const FrameList& frames, const Context& context) {
   std::atomic<std::size_t> scaled{0};  // fuse() loads in the background
   ViewSource source = {frames.used.size(), [&](std::size_t i) {
                          const ChosenFrame& chosen = frames.used[i];
@@ -216,43 +204,32 @@ Cloud fuse_frames(const FuseArguments& a, const FrameList& frames, const Context
                          scaled += notes.scaled ? 1 : 0;
                          return view;
                        }};
-  Cloud cloud;
+  Fused fused;
   FuseOptions options = a.fuse;
-  std::size_t refused = 0;
   if (a.study) {
-    const FrameStudy study = studied(source, context);
-    for (const FrameWord& word : study.words) refused += word.refused ? 1 : 0;
-    source = heeding(source, study);
-    options = heeding(options, study);
+    fused.study = studied(source, context);
+    source = heeding(source, *fused.study);
+    options = heeding(options, *fused.study);
     scaled = 0;
   }
+  fused.tolerance_relative = options.cloud.tolerance_relative;
   {
     Progress progress(context, "fuse", source.count);
-    cloud = fuse(source, options, report, [&](std::size_t done, std::size_t) {
+    fused.cloud = fuse(source, options, &fused.report, [&](std::size_t done, std::size_t) {
       progress.update(done);
       return true;
     });
   }
   throw_if_interrupted();
-  if (report->views == 0) {
+  fused.scaled = scaled;
+  if (fused.report.views == 0) {
     throw Error(a.folders.front(), "no frame has any depth", "depth that is not 0");
   }
-  if (cloud.empty()) {
+  if (fused.cloud.empty()) {
     throw Error(a.folders.front(), "no pixel can be lifted", "depth in the range asked for");
   }
-  if (refused > 0) {
-    context.warn(std::to_string(refused) +
-                 " frames are left out, as the others contradict them: their poses must be wrong");
-  }
-  if (report->empty > refused) {
-    context.warn(std::to_string(report->empty - refused) +
-                 " frames have no depth at all and are left out");
-  }
-  if (scaled > 0) {
-    context.warn(std::to_string(scaled) +
-                 " depth images are of another size than their photos; scaled to the photos' size");
-  }
-  return cloud;
+  warn_of(fused, context);
+  return fused;
 }
 
 void run_fuse(const FuseArguments& given, const CLI::App& verb, const Context& context) {
@@ -261,13 +238,13 @@ void run_fuse(const FuseArguments& given, const CLI::App& verb, const Context& c
   const Stopwatch total;
   const std::vector<RgbdFolder> folders = open_folders(a, context);
   const FrameList frames = choose_some_frames(a, folders);
-  FuseReport fused;
-  const Cloud cloud = fuse_frames(a, frames, context, &fused);
-  Json report = report_of(fused, frames, cloud);
+  const Fused fused = fuse_frames(a, frames, context);
+  Json report = report_of(fused, frames);
   add_costs(report, total);
-  write_all(a, cloud, frames, settings_of(verb, context), report);
+  write_all(a, fused.cloud, frames, settings_of(verb, context), report);
   end_run(context, report, a.output,
-          std::to_string(cloud.size()) + " points from " + std::to_string(fused.views) + " views");
+          std::to_string(fused.cloud.size()) + " points from " +
+              std::to_string(fused.report.views) + " views");
 }
 
 }  // namespace
@@ -285,10 +262,12 @@ void add_fuse(CLI::App& program, const Context& context) {
                  "Keep points where they were first seen, instead of averaging views");
   verb->add_flag("--keep-contradicted", a->keep_contradicted,
                  "Keep points that other views see through");
-  verb->add_flag("--study", a->study,
-                 "Read frames twice, and hold them against each other first: exposures are evened "
-                 "out, frames whose poses are lost are left out, and depths that spread are "
-                 "averaged more widely");
+  verb->add_flag(
+      "--study", a->study,
+      "Read frames twice, and hold them against each other first: exposures are evened "
+      "out, and scales of depths where they differ; frames whose poses are lost and "
+      "depths that no neighbour shares are left out, and depths that spread are averaged "
+      "more widely. The report says what was done to which frame");
   verb->add_flag("--compress", a->compress, "Compress the .pcd; a .ply is never compressed");
   verb->callback([a, verb, &context] { run_fuse(*a, *verb, context); });
 }

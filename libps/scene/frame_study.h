@@ -8,18 +8,18 @@
 namespace ps {
 
 struct FrameStudyOptions {
-  bool gains = true;    ///< even out exposure and white balance
-  bool scales = false;  ///< even out the scales of depths: for those that networks guess
-  bool refuse = true;   ///< leave out frames that the others contradict
-  int width = 128;      ///< pixels across to which frames are reduced, at most
-  int partners = 16;    ///< other frames that a frame is held against, at most
+  bool gains = true;   ///< even out exposure and white balance
+  bool scales = true;  ///< even out the scales of depths, if they agree much better then
+  bool refuse = true;  ///< leave out frames that the others contradict
+  int width = 128;     ///< pixels across to which frames are reduced, at most
+  int partners = 16;   ///< other frames that a frame is held against, at most
   /// Two depths along a ray contradict each other when they differ by more than this share beyond
   /// all depths around the pixel.
   double tolerance = 0.08;
   /// A frame is left out when in the middle one of its pairs more than this share of what both
-  /// see is contradicted, and more than three times what is usual among the frames: the worst
-  /// first, then the worst of the others. None is, if that would be half of them, and
-  /// nothing else is said then.
+  /// see is contradicted, and more than three times what is usual among the frames with a pair: the
+  /// worst first, then the worst of the others. None is, if that would be half of those with a
+  /// pair: the study gives up then.
   double contradicted = 0.15;
 };
 
@@ -32,7 +32,9 @@ struct FrameWord {
 };
 
 struct FrameStudy {
-  std::vector<FrameWord> words;  ///< one for each frame; empty frames have no word
+  std::vector<FrameWord> words;  ///< one for each frame; those of empty frames change nothing
+  /// Half of the frames and more contradict the others: none is refused, and nothing is evened out.
+  bool gave_up = false;
   /// The middle |log ratio| of two frames' depths of one surface, whatever it comes from: noise,
   /// poses, lenses. 0 where no two frames see the same.
   double spread = 0;
@@ -48,8 +50,8 @@ struct FrameStudy {
 FrameStudy study_frames(const ViewSource& source, const FrameStudyOptions& options = {});
 
 /// @return the source with the words heeded: gains and scales applied, depths that no neighbour
-/// shares removed (lone_pixels.h), empty views for refused frames. Throws ps::Error when there are
-/// more or fewer words than frames.
+/// shares removed (lone_pixels.h), empty views for refused frames and those that no depth is left
+/// of. Throws ps::Error when there are more or fewer words than frames.
 ViewSource heeding(const ViewSource& source, const FrameStudy& study);
 
 /// @return the options with a tolerance that takes two frames' depths of one surface for one: as it

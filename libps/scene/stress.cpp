@@ -33,48 +33,83 @@ bool same_picture(const Image& a, const Image& b) {
   return true;
 }
 
+/// FNV-1a over words of 32 bits.
+class Digest {
+ public:
+  void add(std::uint32_t word) { hash_ = (hash_ ^ word) * 1099511628211u; }
+  void add(float x) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, &x, sizeof word);
+    add(word);
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 1469598103934665603u;
+};
+
 /// What one run of a method gave, or why it gave nothing.
 struct Attempt {
   Outcome outcome;
+  double score = kNaN;
   std::string refused, crashed;
 };
+
+/// Does a part of an attempt, which may be refused or crash.
+void attempt_to(const std::function<void()>& act, Attempt* attempt) {
+  try {
+    act();
+  } catch (const Error& error) {
+    attempt->refused = error.what();
+  } catch (const std::exception& error) {
+    attempt->crashed = error.what();
+  }
+}
 
 Attempt attempt(const Axis& axis, const std::string& method, double value, int threads) {
   set_threads(threads);
   Attempt result;
-  try {
-    result.outcome = axis.run(method, value);
-  } catch (const Error& error) {
-    result.refused = error.what();
-  } catch (const std::exception& error) {
-    result.crashed = error.what();
-  }
+  attempt_to([&] { result.outcome = axis.run(method, value); }, &result);
   return result;
 }
 
-/// Adds what is wrong with a step to `violations`.
-void check_step(const Axis& axis, const std::string& method, double value, const Attempt& one,
-                const Attempt& two, std::vector<Violation>* violations) {
-  const auto report = [&](const std::string& what) {
-    violations->push_back({axis.name, method, value, what});
-  };
-  if (!one.crashed.empty()) report("an exception that is no ps::Error: " + one.crashed);
-  if (!one.outcome.finite || (!one.outcome.picture.empty() && !cv::checkRange(one.outcome.picture)))
-    report("not finite");
-  const bool same = one.refused == two.refused && one.crashed == two.crashed &&
-                    one.outcome.digest == two.outcome.digest &&
+/// What is wrong with two threads that is not with one; "" = nothing.
+std::string unlike(const Attempt& one, const Attempt& two) {
+  if (!one.crashed.empty()) return "";
+  if (!two.crashed.empty())
+    return "on two threads, an exception that is no ps::Error: " + two.crashed;
+  const bool same = one.refused == two.refused && one.outcome.digest == two.outcome.digest &&
                     same_picture(one.outcome.picture, two.outcome.picture);
-  if (!same) report("other bytes on two threads than on one");
-  if (!one.outcome.overwritten.empty()) report(one.outcome.overwritten);
+  return same ? "" : "other bytes on two threads than on one";
+}
+
+/// Runs a method at a value, and adds what is wrong with it to `violations`.
+Step run_step(const Axis& axis, const std::string& method, double value, int threads,
+              std::vector<Violation>* violations) {
+  const auto report = [&](const std::string& what) {
+    if (!what.empty()) violations->push_back({axis.name, method, value, what});
+  };
+  const bool compared = threads != 1;
+  const Attempt two = compared ? attempt(axis, method, value, 2) : Attempt();
+  Attempt one = attempt(axis, method, value, 1);
+  if (compared) report(unlike(one, two));
+  set_threads(threads);
+  const Outcome& outcome = one.outcome;
+  if (outcome.score) attempt_to([&] { one.score = outcome.score(); }, &one);
+  if (!one.crashed.empty()) report("an exception that is no ps::Error: " + one.crashed);
+  const bool finite =
+      outcome.finite && (outcome.picture.empty() || cv::checkRange(outcome.picture));
+  if (!finite) report("not finite");
+  report(outcome.overwritten);
+  return {value, one.score, outcome.picture, one.refused};
 }
 
 }  // namespace
 
 std::string criterion_of(const Axis& axis) {
   std::ostringstream text;
-  text << "broken where " << axis.score << " is " << (axis.higher_is_better ? "under " : "over ")
-       << axis.limit << (axis.score_unit.empty() || axis.score_unit == "%" ? "" : " ")
-       << axis.score_unit;
+  text << axis.score << " is " << (axis.higher_is_better ? "under " : "over ") << axis.limit
+       << (axis.score_unit.empty() || axis.score_unit == "%" ? "" : " ") << axis.score_unit;
   return text.str();
 }
 
@@ -137,11 +172,7 @@ AxisResult run_axis(const Axis& axis, int threads, const std::function<void()>& 
     Curve curve;
     curve.method = method;
     for (const double value : axis.values) {
-      const Attempt two = attempt(axis, method, value, 2), one = attempt(axis, method, value, 1);
-      set_threads(threads);
-      check_step(axis, method, value, one, two, &result.violations);
-      curve.steps.push_back({value, one.outcome.score ? one.outcome.score() : kNaN,
-                             one.outcome.picture, one.refused});
+      curve.steps.push_back(run_step(axis, method, value, threads, &result.violations));
       if (progress) progress();
     }
     curve.breaks = breaking_point(axis, curve.scores());
@@ -157,18 +188,21 @@ AxisResult run_axis(const Axis& axis, int threads, const std::function<void()>& 
 }
 
 std::uint64_t digest_of(const Cloud& cloud) {
-  std::uint64_t hash = 1469598103934665603u;  // FNV-1a
-  const auto add = [&](std::uint32_t word) { hash = (hash ^ word) * 1099511628211u; };
+  Digest digest;
   for (const Point& p : cloud) {
-    for (const float x : {p.x, p.y, p.z, p.footprint}) {
-      std::uint32_t word = 0;
-      std::memcpy(&word, &x, sizeof word);
-      add(word);
-    }
-    add(p.rgba);
-    add(static_cast<std::uint32_t>(p.view) << 8 | p.origin);
+    for (const float x : {p.x, p.y, p.z, p.footprint}) digest.add(x);
+    digest.add(p.rgba);
+    digest.add(static_cast<std::uint32_t>(p.view) << 8 | p.origin);
   }
-  return hash;
+  return digest.value();
+}
+
+std::uint64_t digest_of(const Image& image) {
+  Digest digest;
+  for (const cv::Vec3f& c : image) {
+    for (int k = 0; k < 3; ++k) digest.add(c[k]);
+  }
+  return digest.value();
 }
 
 bool finite(const Cloud& cloud) {

@@ -22,11 +22,12 @@ namespace stress {
 
 /// @brief What a method made of a disturbed input.
 struct Outcome {
-  std::function<double()> score;  ///< called once, after the checks; NaN = nothing to score
-  Image picture;                  ///< for people, and for the checks: it must be finite
-  bool finite = true;             ///< of all else that was made
-  std::uint64_t digest = 0;       ///< of all else that was made
-  std::string overwritten;  ///< how what was observed was changed by what was invented; "" = not
+  /// Called once, after the runs; it may throw as Axis::run may. NaN = nothing to score.
+  std::function<double()> score;
+  Image picture;             ///< for people, and for the checks: it must be finite
+  bool finite = true;        ///< of all else that was made
+  std::uint64_t digest = 0;  ///< of all else that was made
+  std::string overwritten;   ///< how what was observed was changed by what was invented; "" = not
 };
 
 /// @brief One thing that goes wrong, from not at all to past all use.
@@ -47,7 +48,7 @@ struct Axis {
   std::function<Image(double value)> truth;  ///< what the picture should be; may be empty
 };
 
-/// @return "broken where PSNR of views left out is under 20 dB"
+/// @return where it is broken: "PSNR of views left out is under 20 dB"
 std::string criterion_of(const Axis& axis);
 
 /// @return whether a score is on the wrong side of the axis's limit; NaN is
@@ -102,12 +103,16 @@ struct AxisResult {
 /// @brief Runs all methods at all values, each on one thread and on two, and holds them to what
 /// must be: no exception but ps::Error, everything finite, the same bytes on two threads, nothing
 /// observed overwritten. Leaves set_threads() at `threads`.
+/// @param threads  1: each is run on one thread alone, and bytes are not compared
 /// @param progress  called after each step; it may throw to stop
 /// Throws ps::Error when the axis has fewer than two values or no method.
 AxisResult run_axis(const Axis& axis, int threads, const std::function<void()>& progress = {});
 
-/// @return a hash of the bytes of a cloud's points: place, colour, view and origin
+/// @return a hash of the bytes of a cloud's points: place, footprint, colour, view and origin
 std::uint64_t digest_of(const pcl::PointCloud<Point>& cloud);
+
+/// @return a hash of the bytes of a picture's colours, whatever they are
+std::uint64_t digest_of(const Image& image);
 
 /// @return whether all its points are finite
 bool finite(const pcl::PointCloud<Point>& cloud);

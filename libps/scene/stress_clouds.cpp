@@ -32,7 +32,7 @@ Image draw(const std::string& method, const Cloud& cloud, const View& view, floa
   options.renormalise = true;
   options.radius = radius;
   if (method == kClosed) {
-    options.radius = std::min(radius, kDetail);
+    options.radius = std::min(kDetail * radius / kRadius, kWidest);
     return closed_splat(cloud, view.intrinsics, view.world_from_cam, options, kWidest).color;
   }
   if (method == kPublished) {
@@ -56,10 +56,10 @@ struct Case {
 };
 using Disturb = std::function<Case(const Model&, double value)>;
 
-Cloud thinned(const Cloud& cloud, double factor) {
+Cloud thinned(const Cloud& cloud, double factor, const Draw& draw) {
   Cloud result;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (even_at({}, static_cast<std::uint32_t>(i)) * factor < 1) result.push_back(cloud[i]);
+    if (even_at(draw, static_cast<std::uint32_t>(i)) * factor < 1) result.push_back(cloud[i]);
   }
   return result;
 }
@@ -147,14 +147,15 @@ std::vector<Axis> cloud_axes(const SuiteOptions& options) {
   CloudAxes axes(options);
   const auto zoom = std::make_shared<Zoom>();
   axes.add("cloud-density", "Points are taken away by chance; one of so many stays", "times",
-           {1, 2, 4, 8, 16, 32, 64, 128, 256}, [](const Model& m, double value) {
-             return Case{thinned(m.cloud, value), m.view};
+           {1, 2, 4, 8, 16, 32, 64, 128, 256},
+           [draw = Draw{options.seed, 0}](const Model& m, double value) {
+             return Case{thinned(m.cloud, value, draw), m.view};
            });
-  axes.add("splat-narrow", "Splats are so many times narrower than two pixels", "times",
+  axes.add("splat-narrow", "Splats are asked for so many times narrower than usual", "times",
            {1, 2, 4, 8, 16, 32}, [](const Model& m, double value) {
              return Case{m.cloud, m.view, static_cast<float>(kRadius / value)};
            });
-  axes.add("splat-wide", "Splats are so many times wider than two pixels", "times",
+  axes.add("splat-wide", "Splats are asked for so many times wider than usual", "times",
            {1, 2, 4, 8, 16, 32}, [](const Model& m, double value) {
              return Case{m.cloud, m.view, static_cast<float>(kRadius * value)};
            });

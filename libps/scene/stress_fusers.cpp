@@ -69,9 +69,7 @@ Cloud voxel_grid(const Cloud& cloud, float leaf) {
 Cloud fuse_by(const std::string& method, const std::vector<View>& frames) {
   if (method == kOurs) {
     const ViewSource source = source_of(frames);
-    FrameStudyOptions options;
-    options.scales = true;
-    const FrameStudy study = study_frames(source, options);
+    const FrameStudy study = study_frames(source);
     return fuse(heeding(source, study), heeding(FuseOptions(), study));
   }
   if (method == kOursUnguarded) {

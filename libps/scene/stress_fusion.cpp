@@ -26,12 +26,13 @@ Disturb each(const std::function<View(const View&, double value, const Draw&)>& 
   };
 }
 
-Outcome fuse_and_score(const std::vector<World>& worlds, const std::string& method, double value,
-                       Score score, const Disturb& disturb) {
+Outcome fuse_and_score(const SuiteOptions& options, const std::vector<World>& worlds,
+                       const std::string& method, double value, Score score,
+                       const Disturb& disturb) {
   Outcome outcome;
   auto clouds = std::make_shared<std::vector<Cloud>>();
   for (std::size_t i = 0; i < worlds.size(); ++i) {
-    clouds->push_back(fuse_by(method, disturb(worlds[i].frames, value, i)));
+    clouds->push_back(fuse_by(method, disturb(worlds[i].frames, value, draw_seed(options, i))));
     note(clouds->back(), &outcome);
   }
   outcome.picture = picture_of(method, clouds->front(), worlds[0].held_out[0]);
@@ -64,8 +65,9 @@ class FusionAxes {
     axis.limit = limit;
     axis.methods = {kOurs, kOursUnguarded, kAllPoints, kVoxelGrid};
     const Worlds worlds = worlds_;
+    const SuiteOptions options = options_;
     axis.run = [=](const std::string& method, double value) {
-      return fuse_and_score(worlds->get(), method, value, score, disturb);
+      return fuse_and_score(options, worlds->get(), method, value, score, disturb);
     };
     axis.truth = [=](double) { return worlds->get()[0].held_out[0].color; };
     axes_.push_back(std::move(axis));

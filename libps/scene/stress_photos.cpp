@@ -69,15 +69,6 @@ std::string overwritten(const MethodView& shown, const MethodView& points) {
   return std::to_string(100 * share) + " % of what was observed is shown otherwise";
 }
 
-std::uint64_t bytes_of(const Image& image) {
-  std::uint64_t hash = 1469598103934665603u;
-  for (const cv::Vec3f& c : image) {
-    for (int k = 0; k < 3; ++k)
-      hash = (hash ^ static_cast<std::uint64_t>(c[k] * (1 << 23))) * 1099511628211u;
-  }
-  return hash;
-}
-
 class PhotoAxes {
  public:
   PhotoAxes(const SuiteOptions& options, const NetworksSource& networks)
@@ -175,7 +166,7 @@ class PhotoAxes {
           outcome.overwritten = overwritten(shown, shown_by("mean-colour", question));
         }
         outcome.finite = outcome.finite && cv::checkRange(shown.color);
-        outcome.digest = outcome.digest * 31 + bytes_of(shown.color);
+        outcome.digest = outcome.digest * 31 + digest_of(shown.color);
         const Truth& true_view = truth(photo, question);
         scores.push_back(psnr(shown.color, true_view.color,
                               where == Where::visible ? true_view.visible : Mask()));

@@ -49,7 +49,11 @@ SuiteOptions full_suite(std::uint64_t seed) {
 }
 
 std::uint64_t room_seed(const SuiteOptions& options, int i) {
-  return 9000 + 100 * options.seed + static_cast<std::uint64_t>(i);
+  return 9000 + draw_seed(options, static_cast<std::size_t>(i));
+}
+
+std::uint64_t draw_seed(const SuiteOptions& options, std::size_t i) {
+  return 100 * options.seed + i;
 }
 
 Worlds make_worlds(const SuiteOptions& options) {

@@ -29,8 +29,9 @@ class Lazy {
 constexpr float kRadius = 2, kDetail = 1.5f, kWidest = 64;
 
 using Worlds = std::shared_ptr<Lazy<std::vector<World>>>;
-/// @return the seed of room i
+/// @return the seed of room i, and of what goes wrong with its frames
 std::uint64_t room_seed(const SuiteOptions& options, int i);
+std::uint64_t draw_seed(const SuiteOptions& options, std::size_t i);
 Worlds make_worlds(const SuiteOptions& options);
 
 /// @return the values, with the ones half way between them if the suite is dense

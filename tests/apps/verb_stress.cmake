@@ -5,8 +5,12 @@ app_test(stress_writes_tables_curves_and_pictures [=[
   prints '^splat-narrow +times +ours '
   is "$(grep -c '^splat-narrow,' s/stress.csv)" -eq 24
   grep -q 'Violations' s/stress.md
+  grep -q '^splat-narrow,"ours, no guard",32,[0-9.]*$' s/stress.csv
+  grep -q '^| splat-narrow | times | PSNR of a view left out is under 16 dB | ' s/stress.md
   is "$(ls s | grep -c partial)" -eq 0]=])
 app_test(stress_refuses_other_axes_and_sizes [=[
   fails 2 'axes.*depth-noise' stress -o s --axes gravity
   fails 2 'size' stress -o s --size huge
   fails 2 'output' stress]=])
+app_test(stress_of_photos_refuses_weights_that_are_not_there [=[
+  fails 1 'absent' stress -o s --axes rotation --weights absent]=])

@@ -10,8 +10,21 @@ app_test(fuse_writes_cloud_report_settings_poses_and_lens [=[
 app_test(fuse_studies_frames_first_if_asked [=[
   works fuse $S/walk -o a.ply --study
   writes a.ply a.report.json
+  is "$(json refused a.report.json)" -eq 0
+  grep -q '"gave_up": false' a.report.json
+  grep -q '"tolerance_relative": 0\.' a.report.json
+  is "$(grep -c '"gain"' a.report.json)" -eq 7
   works --threads 1 fuse $S/walk -o b.ply --study
   cmp a.ply b.ply]=])
+app_test(fuse_names_frames_that_its_study_refuses [=[
+  cp -r $S/walk w
+  awk '$1 == 3 { $4 -= 1 } 1' $S/walk/trajectory.txt > w/trajectory.txt
+  works fuse w -o a.ply --study
+  says 'warning: 1 frames are left out'
+  is "$(json refused a.report.json)" -eq 1
+  is "$(json without_depth a.report.json)" -eq 0
+  is "$(json views a.report.json)" -eq 6
+  grep -A1 '"refused": \[' a.report.json | grep -q 'w/color/00003.png"']=])
 app_test(fuse_writes_pcd [=[
   works fuse $S/walk -o a.pcd
   writes a.pcd

@@ -81,17 +81,54 @@ TEST(FrameStudy, a_lost_frame_is_refused_and_no_other) {
   EXPECT_FALSE(heeded.load(1).depth.empty());
 }
 
-TEST(FrameStudy, no_frame_is_refused_where_half_are_lost) {
-  std::vector<View> views = frames();
-  for (std::size_t i = 0; i < views.size(); i += 2) {
-    const double turn = .3 + .1 * static_cast<double>(i);
-    views[i].world_from_cam.rotate(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitY()));
-    views[i].world_from_cam.translation().y() += turn - .6;
+/// Has something stand before this share of the pixels, from that one on.
+void cover(View* view, double share, double from) {
+  const auto total = static_cast<double>(view->depth.total());
+  for (int k = 0; k < static_cast<int>(share * total); ++k) {
+    const int i = (static_cast<int>(from * total) + k) % static_cast<int>(total);
+    view->depth(i / view->depth.cols, i % view->depth.cols) *= .6f;
   }
+}
+
+bool any_refused(const FrameStudy& study) {
+  return std::any_of(study.words.begin(), study.words.end(),
+                     [](const FrameWord& word) { return word.refused; });
+}
+
+TEST(FrameStudy, gives_up_where_half_would_be_refused) {
+  std::vector<View> views = frames();
+  // Each stands out once the worse ones are gone.
+  const double shares[] = {.6, .3, .15, .08, .04};
+  for (std::size_t i = 0; i < 5; ++i) cover(&views[2 * i], shares[i], .3);
+  FrameStudyOptions options;
+  options.contradicted = 0;
+  const FrameStudy study = study_frames(source_of(views), options);
+  EXPECT_TRUE(study.gave_up);
+  EXPECT_FALSE(any_refused(study));
+  EXPECT_EQ(study.spread, 0);
+  options.refuse = false;
+  const FrameStudy all = study_frames(source_of(views), options);
+  EXPECT_FALSE(all.gave_up);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    EXPECT_EQ(study.words[i].gain, cv::Vec3f(1, 1, 1));
+    EXPECT_EQ(study.words[i].scale, 1);
+    EXPECT_EQ(study.words[i].contradicted, all.words[i].contradicted)
+        << "of all pairs, not of those that refusing had left";
+  }
+  for (std::size_t i = 2; i < 5; ++i) views[2 * i] = frames()[2 * i];
+  EXPECT_TRUE(any_refused(study_frames(source_of(views)))) << "two of ten are not half";
+}
+
+TEST(FrameStudy, frames_without_a_pair_are_not_what_is_usual) {
+  std::vector<View> views = frames();
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    cover(&views[i], .3, .1 * static_cast<double>(i));
+  }
+  views.resize(30);
   const FrameStudy study = study_frames(source_of(views));
-  std::size_t refused = 0;
-  for (const FrameWord& word : study.words) refused += word.refused;
-  EXPECT_LT(2 * refused, views.size());
+  EXPECT_GT(study.words[5].contradicted, FrameStudyOptions().contradicted);
+  EXPECT_FALSE(any_refused(study)) << "none is worse than the others";
+  EXPECT_FALSE(study.gave_up);
 }
 
 TEST(FrameStudy, spread_is_that_of_noise_and_widens_the_tolerance) {
@@ -139,6 +176,24 @@ TEST(FrameStudy, takes_empty_frames_and_none_at_all) {
   EXPECT_EQ(words[1].gain, cv::Vec3f(1, 1, 1));
   EXPECT_FALSE(words[1].refused);
   EXPECT_TRUE(heeding(source_of(views), study).load(1).depth.empty());
+}
+
+TEST(FrameStudy, a_frame_of_lone_depths_alone_is_left_out) {
+  std::vector<View> views = frames();
+  Depth& depth = views[4].depth;
+  for (int y = 0; y < depth.rows; ++y) {
+    for (int x = 0; x < depth.cols; ++x) {
+      // Of 25 depths around a pixel no two agree within 5 %.
+      depth(y, x) = static_cast<float>(.5 * std::pow(1.12, 5 * (y % 5) + x % 5));
+    }
+  }
+  const ViewSource source = source_of(views);
+  const FrameStudy study = study_frames(source);
+  EXPECT_TRUE(heeding(source, study).load(4).depth.empty());
+  FuseReport report;
+  EXPECT_FALSE(fuse(heeding(source, study), FuseOptions(), &report).empty());
+  EXPECT_EQ(report.empty, 1u);
+  EXPECT_EQ(report.views, views.size() - 1);
 }
 
 TEST(FrameStudy, unsound_options_and_words_are_refused) {

@@ -12,6 +12,7 @@
 #include "libps/core/parallel.h"
 #include "libps/geometry/point.h"
 #include "libps/scene/stress_axes.h"
+#include "libps/scene/stress_suite.h"
 
 namespace ps::stress {
 namespace {
@@ -46,7 +47,7 @@ TEST(Stress, a_breaking_point_lies_between_the_steps_around_the_limit) {
   EXPECT_EQ(breaking_point(axis, {30, 28, kNaN, 10}), 2) << "no score breaks at its own value";
   axis.higher_is_better = false;
   EXPECT_EQ(breaking_point(axis, {0, 10, 30, 40}), 1.5);
-  EXPECT_EQ(criterion_of(axis), "broken where PSNR is over 20 dB");
+  EXPECT_EQ(criterion_of(axis), "PSNR is over 20 dB");
 }
 
 TEST(Stress, jumps_are_falls_that_neither_the_rest_nor_another_method_has) {
@@ -87,7 +88,7 @@ std::string violation_of(const std::function<void(Outcome*)>& spoil) {
     if (value == 2) spoil(&outcome);
     return outcome;
   };
-  const AxisResult result = run_axis(axis, 1);
+  const AxisResult result = run_axis(axis, 2);
   if (result.violations.size() != 1) return std::to_string(result.violations.size());
   EXPECT_EQ(result.violations[0].value, 2);
   EXPECT_EQ(result.violations[0].axis, "plain");
@@ -98,6 +99,14 @@ TEST(Stress, what_must_not_be_is_found) {
   EXPECT_EQ(violation_of([](Outcome*) {}), "0");
   EXPECT_EQ(violation_of([](Outcome*) { throw std::runtime_error("boom"); }),
             "an exception that is no ps::Error: boom");
+  EXPECT_EQ(violation_of([](Outcome*) {
+              if (threads() == 2) throw std::runtime_error("boom");
+            }),
+            "on two threads, an exception that is no ps::Error: boom");
+  EXPECT_EQ(violation_of([](Outcome* o) {
+              o->score = []() -> double { throw std::runtime_error("boom"); };
+            }),
+            "an exception that is no ps::Error: boom");
   EXPECT_EQ(violation_of([](Outcome* o) { o->picture(0, 1)[2] = NAN; }), "not finite");
   EXPECT_EQ(violation_of([](Outcome* o) { o->finite = false; }), "not finite");
   EXPECT_EQ(violation_of([](Outcome* o) { o->overwritten = "half of it"; }), "half of it");
@@ -106,6 +115,36 @@ TEST(Stress, what_must_not_be_is_found) {
   EXPECT_EQ(
       violation_of([](Outcome* o) { o->picture(1, 1)[0] = static_cast<float>(threads()) / 2; }),
       "other bytes on two threads than on one");
+}
+
+TEST(Stress, a_score_may_be_refused) {
+  Axis axis = plain_axis();
+  axis.run = [](const std::string&, double value) {
+    Outcome outcome = scored(30);
+    if (value == 2) outcome.score = []() -> double { throw Error("cloud", "is empty"); };
+    return outcome;
+  };
+  const AxisResult result = run_axis(axis, 2);
+  EXPECT_TRUE(result.violations.empty());
+  EXPECT_EQ(result.curves[0].steps[2].refused, "cloud: is empty");
+  EXPECT_TRUE(std::isnan(result.curves[0].steps[2].score));
+  EXPECT_EQ(result.curves[0].breaks, 2);
+}
+
+TEST(Stress, one_thread_runs_each_step_once) {
+  Axis axis = plain_axis();
+  std::vector<int> runs;
+  axis.run = [&](const std::string&, double) {
+    runs.push_back(threads());
+    return scored(30);
+  };
+  run_axis(axis, 1);
+  EXPECT_EQ(runs, std::vector<int>(4, 1));
+  runs.clear();
+  run_axis(axis, 3);
+  EXPECT_EQ(runs, (std::vector<int>{2, 1, 2, 1, 2, 1, 2, 1}));
+  EXPECT_EQ(threads(), 3);
+  set_threads(0);
 }
 
 TEST(Stress, an_axis_of_one_value_or_no_method_is_refused) {
@@ -126,6 +165,17 @@ TEST(Stress, clouds_have_digests_and_may_not_be_finite) {
   EXPECT_TRUE(finite(cloud));
   cloud[2].y = NAN;
   EXPECT_FALSE(finite(cloud));
+}
+
+TEST(Stress, pictures_have_digests_whatever_their_colours) {
+  const Image picture(2, 2, cv::Vec3f(.5f, .5f, .5f));
+  std::set<std::uint64_t> digests = {digest_of(picture)};
+  for (const float x : {std::nextafter(.5f, 1.f), 1e-9f, 2e-9f, -1.f, -2.f, NAN, INFINITY}) {
+    Image other = picture.clone();
+    other(1, 0)[1] = x;
+    EXPECT_TRUE(digests.insert(digest_of(other)).second) << x;
+  }
+  EXPECT_EQ(digest_of(picture), digest_of(picture.clone()));
 }
 
 SuiteOptions tiny_suite() {
@@ -175,6 +225,23 @@ TEST(StressAxes, a_disturbance_leaves_the_undisturbed_as_it_was) {
     EXPECT_NE(disturbed, before) << axis.name;
     EXPECT_EQ(axis.run("all points", 0).digest, before) << axis.name;
   }
+}
+
+TEST(StressAxes, splats_are_as_wide_as_they_are_asked_for) {
+  for (const Axis& axis : cloud_axes(tiny_suite())) {
+    if (axis.name != "splat-wide") continue;
+    for (const std::string& method : axis.methods) {
+      EXPECT_NE(digest_of(axis.run(method, 1).picture), digest_of(axis.run(method, 8).picture))
+          << method;
+    }
+  }
+}
+
+TEST(StressAxes, what_goes_wrong_follows_the_seed) {
+  SuiteOptions other = tiny_suite();
+  other.seed = 1;
+  EXPECT_NE(draw_seed(other, 0), draw_seed(tiny_suite(), 0));
+  EXPECT_NE(draw_seed(other, 1), draw_seed(other, 0));
 }
 
 TEST(StressAxes, photos_need_no_networks_where_methods_need_none) {
