@@ -145,7 +145,7 @@ TEST(Sampler, many_completions_equal_single_ones_bit_by_bit_on_any_number_of_thr
 }
 
 TEST(Sampler, a_thousand_completions_take_no_more_memory_than_fifty) {
-  set_threads(2);
+  set_threads(1);  // of two, one may come too late to take any
   std::mt19937 random(13);
   const PixelCnn network = small_network();
   const Order order = random_order(random, 5, 5, 0.5);
@@ -156,7 +156,7 @@ TEST(Sampler, a_thousand_completions_take_no_more_memory_than_fifty) {
   ASSERT_EQ(all.size(), 1000u);
   for (std::size_t k = 0; k < some.size(); ++k) expect_same(all[k], some[k]);
   expect_same(all[999], fifty.sample(999, 1).at(0));
-  EXPECT_LE(thousand.bytes(), fifty.bytes() * 5 / 4);  // a lane holds 13 there, up to 16 here
+  EXPECT_LE(thousand.bytes(), fifty.bytes() * 5 / 4);  // a lane may hold fewer there, up to 16 here
   set_threads(0);
 }
 
