@@ -6,6 +6,7 @@
 
 #include "apps/default_weights.h"
 #include "io/weights_file.h"
+#include "libps/core/error.h"
 #include "libps/models/color_codes.h"
 
 namespace fs = std::filesystem;
@@ -22,7 +23,10 @@ bool outpaints(const std::string& method) {
 fs::path rgb_weights(const std::string& weights) {
   std::error_code ignored;
   const fs::path beside = fs::path(weights) / kRgb;
-  return !weights.empty() && fs::exists(beside, ignored) ? beside : default_weights(kRgb);
+  if (!weights.empty() && fs::exists(beside, ignored)) return beside;
+  if (const auto shipped = find_default_weights(kRgb)) return *shipped;
+  throw Error("--methods rgb", "its weights do not come with the program",
+              "--weights DIR with rgb.safetensors, of `train pixelcnn --codes colours`");
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ void add_common_options(CLI::App& verb, TrainArguments& a) {
   whole("--test-count", o.test_count, "Examples of each group in an evaluation", 1, 1000000);
   path("--device", o.device, "cpu or cuda", "DEVICE");
   verb.add_option("--arithmetic", o.arithmetic,
-                  "Of convolutions' products: f32, or bf16, twice as fast where the processor has "
+                  "Of convolutions' products: f32, or bf16, faster where the processor has "
                   "AMX")
       ->type_name("TYPE")
       ->check(CLI::IsMember({"f32", "bf16"}));

@@ -20,7 +20,8 @@ void add_normed(Parameters& p, const std::string& name, int in, int out);
 
 /// @brief While there is one, the products of this thread's convolutions are of bfloat16 values and
 /// summed in float (Kalamkar and others, A Study of BFLOAT16 for Deep Learning Training, 2019):
-/// twice as fast where the processor has AMX. Weights, activations, norms and losses stay float.
+/// a depth network's step is 1.6 times as fast where the processor has AMX. Weights, activations,
+/// norms and losses stay float.
 class NarrowProducts {
  public:
   explicit NarrowProducts(bool narrow);

@@ -44,7 +44,7 @@ struct TrainOptions {
   int curriculum = -1;
   std::uint64_t seed = 0;
   std::string device = "cpu";  ///< or "cuda"
-  /// Of the products of convolutions: "f32", or "bf16", which is twice as fast where the processor
+  /// Of the products of convolutions: "f32", or "bf16", which is faster where the processor
   /// has AMX; scores are always of f32.
   std::string arithmetic = "f32";
   int threads = 0;  ///< 0 = all

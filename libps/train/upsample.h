@@ -7,8 +7,8 @@
 namespace ps::train {
 
 /// @brief torch::upsample_bilinear2d to twice the size, align_corners = false; with gradients. Of
-/// float on the CPU it is our own loop over memory, where libtorch 1.13 takes six times as long as
-/// memory; it has no second derivatives.
+/// float on the CPU it is our own loop: libtorch 1.13's takes 56 ms for the gradient of
+/// 8x32x256x256 values on one core. It has no second derivatives.
 /// @param x  [n, c, h, w], of any layout
 /// @return [n, c, 2 h, 2 w]; of float on the CPU always channels last, else as torch has it
 /// Throws c10::Error as torch does.
