@@ -8,10 +8,6 @@ namespace {
 
 thread_local bool narrow_products = false;
 
-Tensor narrow(const Tensor& x) {
-  return narrow_products && x.defined() ? x.to(torch::kBFloat16) : x;
-}
-
 Tensor wide(const Tensor& x) { return x.to(torch::kFloat32); }
 
 }  // namespace
@@ -20,8 +16,12 @@ NarrowProducts::NarrowProducts(bool narrow) : before_(narrow_products) { narrow_
 
 NarrowProducts::~NarrowProducts() { narrow_products = before_; }
 
+Tensor as_factor(const Tensor& x) {
+  return narrow_products && x.defined() ? x.to(torch::kBFloat16) : x;
+}
+
 Tensor conv2d(const Tensor& x, const Tensor& weight, const Tensor& bias, int stride, int padding) {
-  return wide(torch::conv2d(narrow(x), narrow(weight), narrow(bias), stride, padding));
+  return wide(torch::conv2d(as_factor(x), as_factor(weight), as_factor(bias), stride, padding));
 }
 
 void add_convolution(Parameters& p, const std::string& name, int in, int out, int kernel,

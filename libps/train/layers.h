@@ -33,6 +33,8 @@ class NarrowProducts {
   bool before_;
 };
 
+/// @return x as a factor of a product: bfloat16 where narrow ones are asked for
+Tensor as_factor(const Tensor& x);
 /// @brief torch::conv2d, with narrow products where they are asked for.
 Tensor conv2d(const Tensor& x, const Tensor& weight, const Tensor& bias, int stride = 1,
               int padding = 0);
