@@ -31,7 +31,7 @@ struct SceneArguments {
   std::string samples = "50";
   double temperature = 0.7;
   int refine_best = 0;
-  std::string select = "both";
+  std::string select = "likelihood";
 
   std::string budget;  ///< none, auto, points=N or psnr=DB; empty = auto where it outpaints
   int view_size = 1024;

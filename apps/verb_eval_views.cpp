@@ -235,8 +235,9 @@ void add_eval_views(CLI::App& eval, const Context& context) {
       "shows from where the other stands is held against it. PSNR is over all pixels, those whose "
       "surface the input sees by true depth, and those that it does not. With --lpips also LPIPS, "
       "and a Frechet distance on features that the table names: it is no FID.\n"
-      "Methods: ours; one-completion (of ours); by-classifier, by-discriminator, by-likelihood "
-      "(the best of all in the eyes of one); sequential, independent; no-outpainter (the refiner "
+      "Methods: ours (keeps the likeliest completion); one-completion (of ours); by-classifier, "
+      "by-discriminator, by-both (keep the best in these eyes); sequential, independent; "
+      "no-outpainter (the refiner "
       "fills in); rgb (colours as codes); mean-colour, telea, navier-stokes, nearest (plain fills "
       "of what the cloud shows); copy (the input itself).\n"
       "Below each mean its 95 % bootstrap interval over rooms, or over twentieths of a walk.");
