@@ -29,7 +29,7 @@ struct SceneArguments {
   int views_per_direction = 2;
 
   std::string samples = "50";
-  double temperature = 0.7;
+  double temperature = 0.5;
   int refine_best = 0;
   std::string select = "likelihood";
 

@@ -14,7 +14,7 @@ TEST_F(OutpainterOfRandomWeights, a_part_of_the_view_gives_what_the_whole_view_g
   options.samples = 4;
   options.seed = 5;
   const auto completions = Sampler(pixel_cnn_, order_of(background_), known_codes())
-                               .sample(0, 4, {0.7, 5, 0, nullptr, nullptr, nullptr});
+                               .sample(0, 4, {0.5, 5, 0, nullptr, nullptr, nullptr});
   const Outpainted result =
       outpainter({recorder({1, 0, 3, 2})}).run(projection_, background_, options);
   ASSERT_EQ(seen_.size(), 4u);
