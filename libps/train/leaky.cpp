@@ -15,14 +15,14 @@ using torch::autograd::variable_list;
 constexpr std::int64_t kAtOnce = 1 << 15;
 
 PS_ANY_WIDTH void forwards(const float* x, Narrow* to, std::int64_t n, float slope) {
-  for (std::int64_t i = 0; i < n; ++i) to[i] = narrowed(x[i] > 0 ? x[i] : x[i] * slope);
+  for (std::int64_t i = 0; i < n; ++i) to[i] = narrowed(chosen(x[i] > 0, x[i], x[i] * slope));
 }
 
 PS_ANY_WIDTH void backwards(const float* x, const Narrow* gradient, float* to, std::int64_t n,
                             float slope) {
   for (std::int64_t i = 0; i < n; ++i) {
     const float g = widened(gradient[i]);
-    to[i] = x[i] > 0 ? g : g * slope;
+    to[i] = chosen(x[i] > 0, g, g * slope);
   }
 }
 

@@ -107,7 +107,7 @@ class Upsample : public torch::autograd::Function<Upsample> {
 /// to = kNear * near + kFar * far, of what is above 0
 PS_ANY_WIDTH void rectified_blend(const float* near, const float* far, float* to, std::int64_t n) {
   for (std::int64_t i = 0; i < n; ++i) {
-    const float a = near[i] < 0 ? 0 : near[i], b = far[i] < 0 ? 0 : far[i];
+    const float a = chosen(near[i] < 0, 0, near[i]), b = chosen(far[i] < 0, 0, far[i]);
     to[i] = kNear * a + kFar * b;
   }
 }
@@ -130,7 +130,7 @@ PS_ANY_WIDTH void mix_rows(const Narrow* a, const Narrow* b, const Narrow* d, co
 }
 
 PS_ANY_WIDTH void cut_off(const float* x, float* gradient, std::int64_t n) {
-  for (std::int64_t i = 0; i < n; ++i) gradient[i] = x[i] <= 0 ? 0 : gradient[i];
+  for (std::int64_t i = 0; i < n; ++i) gradient[i] = chosen(x[i] <= 0, 0, gradient[i]);
 }
 
 class ReluUpsample : public torch::autograd::Function<ReluUpsample> {
