@@ -6,6 +6,8 @@
 
 #include "libps/models/depth_net.h"
 #include "libps/train/layers.h"
+#include "libps/train/leaky.h"
+#include "libps/train/narrow_norm.h"
 #include "libps/train/upsample.h"
 
 namespace ps::train {
@@ -45,15 +47,14 @@ Tensor DepthNet::forward(const Tensor& image, bool training) const {
   std::vector<Tensor> skips;
   Tensor x = image;
   for (int i = 0; i < kLevels; ++i) {
-    if (i > 0) x = torch::leaky_relu(x, 0.2);
-    x = convolution(parameters, encoder_name(i), x, 2, 1);
-    if (!encoder_norm(i).empty()) x = batch_norm(parameters, encoder_norm(i), x, training);
+    if (i > 0) x = leaky_factor(x, 0.2F);
+    x = normed_convolution(parameters, encoder_name(i), encoder_norm(i), x, 2, 1, training);
     skips.push_back(x);
   }
   for (int i = 0; i < kLevels; ++i) {
-    x = convolution(parameters, decoder_name(i), upsample_2x(torch::relu(x)), 1, 1);
+    x = normed_convolution(parameters, decoder_name(i), decoder_norm(i), relu_upsample_2x(x), 1, 1,
+                           training);
     if (decoder_norm(i).empty()) break;
-    x = batch_norm(parameters, decoder_norm(i), x, training);
     x = torch::cat({x, skips[static_cast<std::size_t>(kLevels - 2 - i)]}, 1);
   }
   return x;

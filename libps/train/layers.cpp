@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "libps/train/narrow.h"
+
 namespace ps::train {
 namespace {
 
@@ -15,6 +17,8 @@ Tensor wide(const Tensor& x) { return x.to(torch::kFloat32); }
 NarrowProducts::NarrowProducts(bool narrow) : before_(narrow_products) { narrow_products = narrow; }
 
 NarrowProducts::~NarrowProducts() { narrow_products = before_; }
+
+bool products_are_narrow() { return narrow_products; }
 
 Tensor as_factor(const Tensor& x) {
   return narrow_products && x.defined() ? x.to(torch::kBFloat16) : x;

@@ -14,4 +14,11 @@ namespace ps::train {
 /// Throws c10::Error as torch does.
 torch::Tensor upsample_2x(const torch::Tensor& x);
 
+/// @brief as_factor(upsample_2x(torch::relu(x))), digit for digit, in one pass forward and one back
+/// where products are narrow and x is of float on the CPU. It has no second derivatives.
+/// @param x  [n, c, h, w], of any layout
+/// @return [n, c, 2 h, 2 w]
+/// Throws c10::Error as torch does.
+torch::Tensor relu_upsample_2x(const torch::Tensor& x);
+
 }  // namespace ps::train

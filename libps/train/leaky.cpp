@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "libps/train/leaky.h"
+
+#include <ATen/Parallel.h>
+
+#include "libps/train/layers.h"
+#include "libps/train/narrow.h"
+
+namespace ps::train {
+namespace {
+
+using torch::autograd::AutogradContext;
+using torch::autograd::variable_list;
+
+constexpr std::int64_t kAtOnce = 1 << 15;
+
+PS_ANY_WIDTH void forwards(const float* x, Narrow* to, std::int64_t n, float slope) {
+  for (std::int64_t i = 0; i < n; ++i) to[i] = narrowed(chosen(x[i] > 0, x[i], x[i] * slope));
+}
+
+PS_ANY_WIDTH void backwards(const float* x, const Narrow* gradient, float* to, std::int64_t n,
+                            float slope) {
+  for (std::int64_t i = 0; i < n; ++i) {
+    const float g = widened(gradient[i]);
+    to[i] = chosen(x[i] > 0, g, g * slope);
+  }
+}
+
+class Leaky : public torch::autograd::Function<Leaky> {
+ public:
+  static Tensor forward(AutogradContext* context, const Tensor& image, double slope) {
+    const Tensor x = image.contiguous(torch::MemoryFormat::ChannelsLast);
+    context->save_for_backward({x});
+    context->saved_data["slope"] = slope;
+    const Tensor out = torch::empty_like(x, x.options().dtype(torch::kBFloat16));
+    const float* const from = x.data_ptr<float>();
+    auto* const to = static_cast<Narrow*>(out.data_ptr());
+    at::parallel_for(0, x.numel(), kAtOnce, [&](std::int64_t begin, std::int64_t end) {
+      forwards(from + begin, to + begin, end - begin, static_cast<float>(slope));
+    });
+    return out;
+  }
+
+  static variable_list backward(AutogradContext* context, variable_list gradients) {
+    const Tensor x = context->get_saved_variables()[0];
+    const auto slope = static_cast<float>(context->saved_data["slope"].toDouble());
+    const Tensor gradient = gradients[0].contiguous(torch::MemoryFormat::ChannelsLast);
+    const Tensor out = torch::empty_like(x);
+    const float* const from = x.data_ptr<float>();
+    const auto* const above = static_cast<const Narrow*>(gradient.data_ptr());
+    float* const to = out.data_ptr<float>();
+    at::parallel_for(0, x.numel(), kAtOnce, [&](std::int64_t begin, std::int64_t end) {
+      backwards(from + begin, above + begin, to + begin, end - begin, slope);
+    });
+    return {out, Tensor()};
+  }
+};
+
+}  // namespace
+
+Tensor leaky_factor(const Tensor& x, float slope) {
+  if (!products_are_narrow() || !x.is_cpu() || x.scalar_type() != torch::kFloat32) {
+    return as_factor(torch::leaky_relu(x, slope));
+  }
+  return Leaky::apply(x, static_cast<double>(slope));
+}
+
+}  // namespace ps::train

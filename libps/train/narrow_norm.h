@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Internal to this room: a convolution and the batch norm after it.
+#pragma once
+
+#include <string>
+
+#include "libps/train/parameters.h"
+
+namespace ps::train {
+
+/// @brief convolution() and, unless `norm` is empty, batch_norm() of what it gives. Where products
+/// are narrow, in training on the CPU, the norm reads the bfloat16 values that the product wrote,
+/// with sums in double, and hands it a bfloat16 gradient: neither is copied to float and back.
+/// Values differ from batch_norm()'s by rounding alone, whatever the number of threads. It has no
+/// second derivatives then.
+/// @param x  [n, c, h, w], of any layout
+/// @return float
+Tensor normed_convolution(const Parameters& p, const std::string& name, const std::string& norm,
+                          const Tensor& x, int stride, int padding, bool training);
+
+/// @brief The norm alone.
+/// @param x  [n, c, h, w] of bfloat16 on the CPU; the rest [c] of float, the running ones moved
+/// @return float, channels last
+Tensor narrow_batch_norm(const Tensor& x, const Tensor& weight, const Tensor& bias,
+                         const Tensor& running_mean, const Tensor& running_var);
+
+}  // namespace ps::train

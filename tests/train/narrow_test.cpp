@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Fused layers of narrow products give what libtorch's own, one after the other, give.
+#include <gtest/gtest.h>
+#include <torch/torch.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "libps/train/layers.h"
+#include "libps/train/leaky.h"
+#include "libps/train/narrow_norm.h"
+#include "libps/train/upsample.h"
+
+namespace ps::train {
+namespace {
+
+const std::vector<std::vector<std::int64_t>> kShapes = {
+    {2, 3, 5, 3}, {1, 1, 1, 1}, {2, 16, 8, 16}, {3, 33, 1, 2}};
+
+/// Positive, negative and zero, of either layout.
+Tensor signal(const std::vector<std::int64_t>& shape, std::int64_t seed, bool last) {
+  Tensor x = torch::randn(shape, generator_of(seed, 0));
+  x = x.masked_fill(x.abs() < .1, 0);
+  return last ? x.contiguous(torch::MemoryFormat::ChannelsLast) : x;
+}
+
+Tensor gradient_of(const Tensor& y, const Tensor& x) {
+  const Tensor above = torch::randn(y.sizes(), generator_of(9, 0)).to(y.scalar_type());
+  return torch::autograd::grad({y}, {x}, {above})[0];
+}
+
+template <class Ours, class Theirs>
+void expect_same_digits(const Ours& ours, const Theirs& theirs) {
+  const NarrowProducts on(true);
+  for (const auto& shape : kShapes) {
+    for (const bool last : {false, true}) {
+      const Tensor x = signal(shape, 1, last).requires_grad_();
+      const Tensor a = ours(x), b = theirs(x);
+      EXPECT_EQ(a.scalar_type(), torch::kBFloat16);
+      EXPECT_TRUE(torch::equal(a, b)) << shape;
+      EXPECT_TRUE(torch::equal(gradient_of(a, x), gradient_of(b, x))) << shape;
+    }
+  }
+}
+
+TEST(ReluUpsample, gives_libtorchs_digits_and_their_gradients) {
+  expect_same_digits([](const Tensor& x) { return relu_upsample_2x(x); },
+                     [](const Tensor& x) { return as_factor(upsample_2x(torch::relu(x))); });
+}
+
+TEST(LeakyFactor, gives_libtorchs_digits_and_their_gradients) {
+  expect_same_digits([](const Tensor& x) { return leaky_factor(x, .2F); },
+                     [](const Tensor& x) { return as_factor(torch::leaky_relu(x, .2)); });
+}
+
+TEST(FusedLayers, leave_wide_products_as_they_are) {
+  const Tensor x = signal({2, 3, 4, 4}, 1, true);
+  EXPECT_TRUE(torch::equal(relu_upsample_2x(x), upsample_2x(torch::relu(x))));
+  EXPECT_TRUE(torch::equal(leaky_factor(x, .2F), torch::leaky_relu(x, .2)));
+}
+
+TEST(LeakyFactor, hands_on_what_is_not_finite) {
+  const NarrowProducts on(true);
+  const float far = std::numeric_limits<float>::infinity();
+  const Tensor x = torch::tensor({far, -far, std::nanf("")}).view({1, 3, 1, 1});
+  EXPECT_TRUE(
+      torch::equal(torch::isfinite(leaky_factor(x, .2F)), torch::zeros({1, 3, 1, 1}).gt(1)));
+  EXPECT_TRUE(torch::isnan(leaky_factor(x, .2F)[0][2]).item<bool>());
+}
+
+TEST(NarrowNorm, gives_what_libtorchs_batch_norm_gives_and_its_gradients) {
+  for (const std::vector<std::int64_t>& shape :
+       {std::vector<std::int64_t>{2, 3, 5, 3}, {1, 16, 1, 2}, {3, 33, 40, 31}}) {
+    const std::int64_t c = shape[1];
+    // Means well off 0, and gradients that are not.
+    const Tensor x = (signal(shape, 1, true) + torch::arange(c).view({1, c, 1, 1}))
+                         .to(torch::kBFloat16)
+                         .requires_grad_();
+    const Tensor weight = torch::rand({c}, generator_of(2, 0)).add_(.5).requires_grad_();
+    const Tensor bias = torch::randn({c}, generator_of(3, 0)).requires_grad_();
+    const Tensor above = torch::randn(shape, generator_of(4, 0)) + .3;
+    std::vector<std::vector<Tensor>> results;
+    for (const bool ours : {true, false}) {
+      const Tensor mean = torch::full({c}, .5), var = torch::full({c}, 2.);
+      const Tensor y = ours ? narrow_batch_norm(x, weight, bias, mean, var)
+                            : torch::batch_norm(x.to(torch::kFloat32), weight, bias, mean, var,
+                                                true, .1, 1e-5, false);
+      EXPECT_EQ(y.scalar_type(), torch::kFloat32);
+      auto all = torch::autograd::grad({y}, {weight, bias, x}, {above});
+      EXPECT_EQ(all.back().scalar_type(), torch::kBFloat16);
+      all.insert(all.begin(), {y, mean, var});
+      results.push_back(std::move(all));
+    }
+    for (std::size_t i = 0; i < results[0].size(); ++i) {
+      const bool narrow = results[0][i].scalar_type() == torch::kBFloat16;
+      const Tensor a = results[0][i].to(torch::kFloat32), b = results[1][i].to(torch::kFloat32);
+      EXPECT_TRUE(torch::allclose(a, b, narrow ? 1. / 128 : 1e-4, 1e-4))
+          << i << ": " << (a - b).abs().max();
+    }
+  }
+}
+
+TEST(NormedConvolution, stays_near_a_convolution_and_a_norm) {
+  Parameters p("", 1);
+  add_convolution(p, "conv", 5, 16, 3);
+  add_batch_norm(p, "norm", 16);
+  const Tensor x = signal({2, 5, 12, 9}, 1, true);
+  const NarrowProducts on(true);
+  const Tensor theirs = batch_norm(p, "norm", convolution(p, "conv", x, 1, 1), true);
+  const Tensor mean = p["norm.running_mean"].clone(), var = p["norm.running_var"].clone();
+  p["norm.running_mean"].zero_();
+  p["norm.running_var"].fill_(1);
+  const Tensor ours = normed_convolution(p, "conv", "norm", x, 1, 1, true);
+  EXPECT_TRUE(torch::allclose(ours, theirs, 1e-4, 1e-4));
+  EXPECT_TRUE(torch::allclose(p["norm.running_mean"], mean, 1e-4, 1e-5));
+  EXPECT_TRUE(torch::allclose(p["norm.running_var"], var, 1e-4, 1e-5));
+  // Not in training, it is the two, digit for digit.
+  EXPECT_TRUE(torch::equal(normed_convolution(p, "conv", "norm", x, 1, 1, false),
+                           batch_norm(p, "norm", convolution(p, "conv", x, 1, 1), false)));
+}
+
+}  // namespace
+}  // namespace ps::train
