@@ -89,9 +89,13 @@ app_test(outputs_that_cannot_be_are_refused_before_the_work [=[
   fails 1 's/.* is a f' -q scene $S/photo.png --depth $S/depth.png --no-outpaint -o s
   fails 1 'is a file' scene $S/photo.png --depth $S/depth.png --no-outpaint -o file]=])
 app_test(bad_photos_fail_with_one_line [=[
-  for f in nothing.jpg truncated.jpg truncated.png text.png damaged.png damaged.bmp damaged.ppm damaged.pgm; do
+  for f in nothing.jpg truncated.jpg truncated.png text.png damaged.png damaged.bmp damaged.ppm damaged.pgm damaged.tiff damaged.webp; do
     fails 1 $f scene $S/$f --depth $S/depth.png --no-outpaint -o a
   done]=])
+app_test(decoders_print_nothing_of_their_own [=[
+  works scene $S/damaged.jpg --depth $S/depth.png --fov 60 --no-outpaint -o s
+  is "$(wc -l <"$work/err")" -eq 1
+  says '^s: .* points']=])
 app_test(bad_clouds_fail_with_one_line [=[
   for f in empty.ply promise.ply photo.png; do
     fails 1 $f render $S/$f -o a.png
