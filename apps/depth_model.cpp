@@ -16,11 +16,22 @@ double number_in(const Metadata& metadata, const std::string& key, const std::st
   throw Error(file, key + " in its metadata is '" + metadata.at(key) + "'", "a number");
 }
 
-DepthScale scale_of(const std::string& file, const Context& context) {
+/// A published checkpoint holds the two as tensors of one value.
+bool read_tensors(const nn::Weights& weights, DepthScale& scale) {
+  if (!weights.has("min_z") || !weights.has("max_z")) return false;
+  scale.min_z = weights.get("min_z", {1}).values[0];
+  scale.max_z = weights.get("max_z", {1}).values[0];
+  return true;
+}
+
+DepthScale scale_of(const std::string& file, const nn::Weights& weights, const Context& context) {
   const Metadata metadata = read_metadata(file);
   DepthScale scale;
   if (metadata.count("min_z") == 0 || metadata.count("max_z") == 0) {
-    context.warn(file + ": does not say which depths it was trained to; 1 to 100 m taken");
+    if (!read_tensors(weights, scale)) {
+      context.warn(file + ": does not say which depths it was trained to; 1 to 100 m taken");
+    }
+    check(scale, file);
     return scale;
   }
   scale.min_z = static_cast<float>(number_in(metadata, "min_z", file));
@@ -43,8 +54,9 @@ void add_weights_option(CLI::App& verb, std::string& weights) {
 DepthModel load_depth_model(const std::string& weights, const Context& context) {
   const std::string file =
       weights.empty() ? default_weights("depth.safetensors").string() : weights;
-  models::DepthNet net(read_weights(file));
-  return {file, scale_of(file, context), std::move(net)};
+  const nn::Weights read = read_weights(file);
+  models::DepthNet net(read);
+  return {file, scale_of(file, read, context), std::move(net)};
 }
 
 Json scale_report(const DepthModel& model, const Intrinsics& lens) {

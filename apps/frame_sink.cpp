@@ -7,6 +7,7 @@
 
 #include "apps/output.h"
 #include "apps/part.h"
+#include "io/atomic_file.h"
 #include "io/depth_file.h"
 #include "io/intrinsics_file.h"
 #include "io/photo.h"
@@ -67,8 +68,10 @@ class PictureSink : public FrameSink {
   void add(const Splat& frame) override { frame_ = frame; }
 
   void finish(const std::vector<Pose>&, const Intrinsics&) override {
+    AtomicFiles files;
     write_image(path_, frame_.color);
     if (options_.depth) write_depth_png(beside(path_, "depth.png"), frame_);
+    files.commit();
   }
 
  private:

@@ -110,19 +110,14 @@ OutputFolder::OutputFolder(const fs::path& target) : given_(target) {
       },
       given);
   check_parent(target_, given_);
-  const std::string name = ".partial-" + std::to_string(getpid());
-  partial_ = is_mount_point(target_) ? target_ / name : fs::path(target_.string() + name);
-  const bool made = on_files([this] { return fs::create_directory(partial_); }, given);
-  if (!made) throw Error(partial_.string(), "is there already, of a run that was ended; remove it");
-}
-
-OutputFolder::~OutputFolder() {
-  std::error_code ignored;
-  fs::remove_all(partial_, ignored);
+  const bool inside = is_mount_point(target_);
+  const fs::path parent = inside ? target_ : target_.parent_path();
+  const std::string name = inside ? "" : target_.filename().string();
+  on_files([&] { partial_.emplace(parent, name); }, given);
 }
 
 std::string OutputFolder::shown(const fs::path& path) const {
-  for (const fs::path& place : {partial_, target_}) {
+  for (const fs::path& place : {partial_->path(), target_}) {
     const fs::path rest = path.lexically_relative(place);
     if (rest == ".") return given_.string();
     if (!rest.empty() && *rest.begin() != "..") return (given_ / rest).string();
@@ -132,7 +127,7 @@ std::string OutputFolder::shown(const fs::path& path) const {
 
 void OutputFolder::write(const std::string& name,
                          const std::function<void(const fs::path&)>& task) {
-  const fs::path file = partial_ / name;
+  const fs::path file = partial_->path() / name;
   on_files([&] { fs::create_directories(file.parent_path()); },
            [this](const fs::path& path) { return shown(path); });
   try {
@@ -148,11 +143,11 @@ void OutputFolder::commit() {
   on_files(
       [this] {
         if (fs::is_directory(target_)) {
-          check_merge(partial_, given_);
-          merge(partial_, given_);
-          fs::remove_all(partial_);
+          check_merge(partial_->path(), given_);
+          merge(partial_->path(), given_);
+          fs::remove_all(partial_->path());
         } else {
-          fs::rename(partial_, target_);
+          fs::rename(partial_->path(), target_);
         }
       },
       [this](const fs::path& path) { return shown(path); });

@@ -3,15 +3,19 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "apps/partial_folder.h"
 
 namespace ps::apps {
 
 /// @brief A folder of outputs that appears when commit() succeeds, or not at all.
 ///
 /// Everything is written into `TARGET.partial-PID` beside it (inside, as `.partial-PID`, where the
-/// target is a mount point). commit() renames that to the target,
+/// target is a mount point), and what earlier runs left there when they were killed is removed
+/// first. commit() renames that to the target,
 /// or, when the target is a folder already, moves its files over one by one: files of the same name
 /// are replaced, a numbered file (frame_00012.png) of an earlier, longer run is removed, and all
 /// others stay. It first checks that no file would have to replace a folder or a folder a file.
@@ -20,9 +24,6 @@ class OutputFolder {
   /// Throws ps::Error when the target is a file, or when its parent is missing or cannot be
   /// written.
   explicit OutputFolder(const std::filesystem::path& target);
-  ~OutputFolder();  ///< removes what was not committed
-  OutputFolder(const OutputFolder&) = delete;
-  OutputFolder& operator=(const OutputFolder&) = delete;
 
   /// Makes the folder of a file of this relative name, and has `task` write it where it is told to.
   /// A ps::Error of the task leaves with the place that the file would have had.
@@ -33,9 +34,9 @@ class OutputFolder {
  private:
   std::string shown(const std::filesystem::path& path) const;
 
-  std::filesystem::path given_;   ///< the target as the user wrote it, for messages
-  std::filesystem::path target_;  ///< the same, absolute
-  std::filesystem::path partial_;
+  std::filesystem::path given_;           ///< the target as the user wrote it, for messages
+  std::filesystem::path target_;          ///< the same, absolute
+  std::optional<PartialFolder> partial_;  ///< always there; removes what was not committed
 };
 
 /// @brief Fails before the work, not after it: throws ps::Error unless `path` has one of the

@@ -14,6 +14,7 @@
 #include <string>
 
 #include "apps/interrupt.h"
+#include "io/hush.h"
 #include "libps/core/parallel.h"
 
 namespace ps::apps {
@@ -38,6 +39,7 @@ void add_common_options(CLI::App& program, Context& context) {
 void hush_libraries() {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   cv::redirectError([](int, const char*, const char*, const char*, int, void*) { return 0; });
+  hush_decoders();
 }
 
 int report_usage(const CLI::App& program, const CLI::ParseError& error) {

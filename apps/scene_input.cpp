@@ -3,21 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <opencv2/imgproc.hpp>
 #include <system_error>
 
 #include "apps/frame_list.h"
-#include "apps/interrupt.h"
 #include "apps/lift_arguments.h"
 #include "apps/program.h"
-#include "apps/progress.h"
 #include "io/depth_file.h"
 #include "io/photo.h"
 #include "io/rgbd_folder.h"
 #include "io/trajectory.h"
 #include "libps/core/error.h"
 #include "libps/geometry/relative_pose.h"
-#include "libps/scene/camera_path.h"
 #include "libps/scene/photo_depth.h"
 #include "libps/scene/second_view.h"
 
@@ -100,45 +98,60 @@ View read_one(const SceneInputArguments& a, const std::string& file, const std::
   return view;
 }
 
-SceneInput read_frames(const SceneInputArguments& a, const Context& context) {
+/// The frames of a folder, which they point into.
+struct Frames {
+  std::vector<RgbdFolder> folders;
+  std::vector<ChosenFrame> chosen;
+  double depth_scale = 1000;
+
+  View load(std::size_t i) const {
+    FrameNotes notes;
+    return load_frame(*chosen[i].folder, chosen[i].frame, depth_scale, &notes);
+  }
+  Depth load_depth(std::size_t i) const {
+    const Depth depth = read_depth(chosen[i].frame.depth, depth_scale);
+    const Intrinsics& lens = chosen[i].folder->intrinsics;
+    return depth.size() == cv::Size(lens.width, lens.height) ? depth : load(i).depth;
+  }
+};
+
+std::shared_ptr<const Frames> open_frames(const SceneInputArguments& a, const Context& context) {
   std::size_t skipped = 0;
-  const std::vector<RgbdFolder> folders = {open_rgbd_folder(a.photo, &skipped)};
+  auto frames = std::make_shared<Frames>();
+  frames->folders = {open_rgbd_folder(a.photo, &skipped)};
+  frames->depth_scale = a.depth_scale;
   if (skipped > 0) {
     context.warn(a.photo + ": " + std::to_string(skipped) +
                  " frames lack colour, depth or pose and are left out");
   }
-  const std::vector<ChosenFrame> frames = choose_frames(folders, a.choice()).used;
-  if (frames.empty())
+  frames->chosen = choose_frames(frames->folders, a.choice()).used;
+  if (frames->chosen.empty())
     throw Error("--frames", "no frame is in " + a.frames, "a range that has some");
+  return frames;
+}
+
+SceneInput read_frames(const SceneInputArguments& a, const Context& context) {
+  const std::shared_ptr<const Frames> frames = open_frames(a, context);
   SceneInput input;
-  std::vector<Pose> poses;
-  std::size_t empty = 0;
-  Progress progress(context, "frames", frames.size());
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    FrameNotes notes;
-    View view = load_frame(*frames[i].folder, frames[i].frame, a.depth_scale, &notes);
-    progress.update(i + 1);
-    if (notes.without_depth) {
-      ++empty;
-      continue;
-    }
-    poses.push_back(view.world_from_cam);
-    input.views.push_back(std::move(view));
+  std::size_t begin = 0;
+  while (begin < frames->chosen.size() && (input.first = frames->load(begin)).depth.empty()) {
+    ++begin;
   }
-  if (input.views.empty()) throw Error(a.photo, "no frame has any depth", "depth that is not 0");
-  if (empty > 0) {
-    context.warn(std::to_string(empty) + " frames have no depth at all and are left out");
+  if (input.first.depth.empty()) {
+    throw Error(a.photo, "no frame has any depth", "depth that is not 0");
   }
-  input.up = up_axis(poses);
-  input.report["lens"] = to_json(input.views.front().intrinsics);
-  input.report["depth"] = {{"from", a.photo}, {"frames", input.views.size()}};
+  input.count = frames->chosen.size() - begin;
+  input.without_depth = begin;
+  input.load = [frames, begin](std::size_t i) { return frames->load(begin + i); };
+  input.load_depth = [frames, begin](std::size_t i) { return frames->load_depth(begin + i); };
+  input.report["lens"] = to_json(input.first.intrinsics);
+  input.report["depth"] = {{"from", a.photo}};
   return input;
 }
 
 /// The second photo, placed where it was taken, its depth on the first one's scale.
-void add_second(const SceneInputArguments& a, const View& first, const DepthModel* model,
-                int longest, const Context& context, SceneInput& input) {
-  Json report;
+View read_second(const SceneInputArguments& a, const View& first, const DepthModel* model,
+                 const Context& context, Json& report) {
   View second = read_one(a, a.second, a.second_depth, model, context, report);
   if (a.second_pose == "auto") {
     const SecondPose found = find_second_pose(first, second.color, second.intrinsics, second.depth);
@@ -165,8 +178,7 @@ void add_second(const SceneInputArguments& a, const View& first, const DepthMode
   if (std::isfinite(agreed.before)) {
     report["depth_disagreement"] = {{"before", agreed.before}, {"after", agreed.residual}};
   }
-  input.views.push_back(shrunk(agreed.view, longest, report));
-  input.report["second"] = report;
+  return agreed.view;
 }
 
 }  // namespace
@@ -250,8 +262,16 @@ SceneInput read_scene_input(const SceneInputArguments& a, const DepthModel* mode
   }
   SceneInput input;
   const View photo = read_one(a, a.photo, a.depth, model, context, input.report);
-  input.views.push_back(shrunk(photo, longest, input.report));
-  if (!a.second.empty()) add_second(a, photo, model, longest, context, input);
+  std::vector<View> views = {shrunk(photo, longest, input.report)};
+  if (!a.second.empty()) {
+    Json report;
+    const View second = read_second(a, photo, model, context, report);
+    views.push_back(shrunk(second, longest, report));
+    input.report["second"] = report;
+  }
+  input.first = views.front();
+  input.count = views.size();
+  input.load = [views](std::size_t i) { return views[i]; };
   return input;
 }
 

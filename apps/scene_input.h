@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -37,13 +38,18 @@ struct SceneInputArguments {
   std::vector<std::filesystem::path> files() const;
 };
 
+/// What was observed. A folder's frames are read when they are asked for: none is held.
 struct SceneInput {
-  std::vector<View> views;  ///< what was observed; the scene starts from the first
-  std::string up = "y";     ///< the world's axis
-  Json report;              ///< what the report says of lens and depth
+  View first;                             ///< the scene starts from it
+  std::size_t count = 1;                  ///< of views, with the first
+  std::function<View(std::size_t)> load;  ///< by number from 0; a frame without depth is empty
+  std::function<Depth(std::size_t)> load_depth;  ///< the same's depth alone; null: of photos
+  std::size_t without_depth = 0;                 ///< frames before the first, left out
+  Json report;                                   ///< what the report says of lens and depth
 };
 
-/// @brief Reads it all. Depth that is not given, or has holes, is estimated by `model`.
+/// @brief Reads photos, or a folder's first frame. Depth that is not given, or has holes, is
+/// estimated by `model`.
 /// @param model    null = depth must be given
 /// @param longest  pixels: a photo with a longer side is shrunk to that before it is lifted
 /// Throws ps::Error.

@@ -9,6 +9,7 @@
 #include "apps/scene_report.h"
 #include "io/trajectory.h"
 #include "libps/core/error.h"
+#include "libps/scene/camera_path.h"
 
 namespace ps::apps {
 namespace {
@@ -28,6 +29,7 @@ SceneMaker::SceneMaker(const SceneArguments& arguments, const Json& settings,
       plan_options_(arguments.plan()),
       options_(arguments.scene(context)) {
   a_.point_budget();  // fails before the work
+  options_.cloud.lift.estimated = a_.input.needs_estimate();
   check_depth_range(a_.input.lift);
   options_.outpaint.progress = [this](double done) {
     bar_->update(done_ * kSteps + static_cast<std::size_t>(std::lround(done * kSteps)));
@@ -46,7 +48,7 @@ void SceneMaker::load_networks() {
 }
 
 void SceneMaker::make_plan() {
-  plan_ = plan_scene(input_.views.front().world_from_cam, plan_options_);
+  plan_ = plan_scene(input_.first.world_from_cam, plan_options_);
   if (a_.support_views.empty()) return;
   std::size_t number = 0;
   for (const StampedPose& pose : read_trajectory(a_.support_views)) {
@@ -54,27 +56,49 @@ void SceneMaker::make_plan() {
   }
 }
 
+AddReport SceneMaker::observe_all(SceneCloud& plain) {
+  AddReport sum;
+  std::vector<Pose> poses;
+  const bool frames = input_.load_depth != nullptr;
+  std::size_t without_depth = input_.without_depth;
+  Progress progress(context_, "frames", input_.count);
+  for (std::size_t i = 0; i < input_.count; ++i) {
+    throw_if_interrupted();
+    const View view = i == 0 ? input_.first : input_.load(i);
+    if (frames) progress.update(i + 1);
+    if (view.depth.empty()) {
+      ++without_depth;
+      continue;
+    }
+    const auto number = static_cast<std::uint16_t>(poses.size());
+    std::function<Depth()> again;
+    if (frames) again = [load = input_.load_depth, i] { return load(i); };
+    sum += scene_ ? scene_->observe(view, number, again) : plain.add(view, number);
+    poses.push_back(view.world_from_cam);
+  }
+  observed_ = poses.size();
+  input_.load = nullptr;  // what photos it holds is in the cloud now
+  if (!frames) return sum;
+  up_ = up_axis(poses);
+  report_["depth"]["frames"] = observed_;
+  if (without_depth > 0) {
+    context_.warn(std::to_string(without_depth) + " frames have no depth at all and are left out");
+  }
+  return sum;
+}
+
 void SceneMaker::observe() {
   const Stopwatch watch;
-  AddReport sum;
-  const Intrinsics& lens = input_.views.front().intrinsics;
   SceneCloud plain(options_.cloud);
   if (models_) {
-    scene_ = std::make_unique<StrategyScene>(plan_options_.strategy, models_->networks(), lens,
+    scene_ = std::make_unique<StrategyScene>(plan_options_.strategy, models_->networks(), lens(),
                                              options_);
   }
-  for (std::size_t i = 0; i < input_.views.size(); ++i) {
-    throw_if_interrupted();
-    const auto number = static_cast<std::uint16_t>(i);
-    const View& view = input_.views[i];
-    sum += scene_ ? scene_->observe(view, number) : plain.add(view, number);
-    if (i > 0) input_.views[i].color.release();  // it is in the cloud now
-  }
+  report_["pixels"] = to_json(observe_all(plain));
   cloud_ = scene_ ? scene_->cloud() : plain.cloud();
   if (cloud_.empty()) {
     throw Error(a_.input.photo, "no pixel can be lifted", "depth in the range asked for");
   }
-  report_["pixels"] = to_json(sum);
   report_["seconds"]["observe"] = watch.seconds();
 }
 
@@ -110,7 +134,7 @@ void SceneMaker::outpaint_all() {
   if (shown) painted_.resize(plan_.size());
   for (std::size_t i = 0; i < plan_.size(); ++i) {
     if (!plan_[i].outpaint) continue;
-    const std::size_t number = input_.views.size() + done_;
+    const std::size_t number = observed_ + done_;
     const SupportView support = outpaint(plan_[i], static_cast<std::uint16_t>(number));
     if (shown) painted_[i] = support.view.color;
   }
@@ -127,7 +151,7 @@ void SceneMaker::make() {
   report_.update(input_.report);
   report_["seconds"]["read_input"] = watch.seconds();
   make_plan();
-  if (plan_.size() + input_.views.size() > 65536) {
+  if (plan_.size() + input_.count > 65536) {
     throw Error("scene", "there are more than 65536 views", "fewer frames or support views");
   }
   observe();

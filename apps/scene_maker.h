@@ -29,7 +29,8 @@ class SceneMaker {
   void finish();
 
   bool has_begun() const { return done_ > 0; }  ///< there is something to resume
-  const SceneInput& input() const { return input_; }
+  const Intrinsics& lens() const { return input_.first.intrinsics; }  ///< the first view's
+  const std::string& up() const { return up_; }                       ///< the world's axis
   const Cloud& cloud() const { return cloud_; }
   const std::vector<ViewPlan>& plan() const { return plan_; }
   /// Null where nothing is outpainted.
@@ -45,6 +46,7 @@ class SceneMaker {
   void load_networks();
   void make_plan();
   void observe();
+  AddReport observe_all(SceneCloud& plain);
   void outpaint_all();
   SupportView outpaint(const ViewPlan& view, std::uint16_t number);
 
@@ -60,7 +62,9 @@ class SceneMaker {
   std::unique_ptr<SceneWork> work_;
   std::unique_ptr<StrategyScene> scene_;
   std::unique_ptr<Progress> bar_;
-  std::size_t done_ = 0;  ///< views that are outpainted
+  std::string up_ = "y";
+  std::size_t observed_ = 0;  ///< views that were observed
+  std::size_t done_ = 0;      ///< views that are outpainted
   std::vector<Image> painted_;
   Cloud cloud_;
   Json report_;

@@ -7,6 +7,7 @@
 #include "apps/default_weights.h"
 #include "io/weights_file.h"
 #include "libps/core/error.h"
+#include "libps/models/codebook_mark.h"
 
 namespace fs = std::filesystem;
 
@@ -37,6 +38,16 @@ void check_codes(const models::Autoencoder& autoencoder, const models::PixelCnn&
               "networks that were trained together");
 }
 
+void check_codebook(const nn::Weights& autoencoder, const fs::path& pixel_cnn) {
+  const Metadata words = read_metadata(pixel_cnn);
+  const auto mark = words.find(models::kCodebookMark);
+  if (mark == words.end()) return;
+  const auto& embed = autoencoder.get("vqvae.quantize_t.embed", {0, 0}).values;
+  if (models::same_codebook(mark->second, models::codebook_mark(embed))) return;
+  throw Error(pixel_cnn.string(), "continues other codes than those of " + autoencoder.name(),
+              "networks that were trained together");
+}
+
 SceneModels::SceneModels(const std::string& weights, const std::string& selection,
                          const Context& context) {
   const auto read = [&](const char* name) {
@@ -47,7 +58,9 @@ SceneModels::SceneModels(const std::string& weights, const std::string& selectio
   const auto wants = [&](const char* name) { return selection == "both" || selection == name; };
   files_.emplace_back(depth_weights(weights));
   depth_ = std::make_unique<DepthModel>(load_depth_model(files_.front().string(), context));
-  autoencoder_ = std::make_unique<models::Autoencoder>(read("vqvae.safetensors"));
+  const nn::Weights vqvae = read("vqvae.safetensors");
+  autoencoder_ = std::make_unique<models::Autoencoder>(vqvae);
+  check_codebook(vqvae, weights_of(weights, "pixelcnn.safetensors"));
   pixel_cnn_ = std::make_unique<models::PixelCnn>(read("pixelcnn.safetensors"));
   const nn::Weights refine = read("refine.safetensors");
   refiner_ = std::make_unique<models::Refiner>(refine);
@@ -56,7 +69,11 @@ SceneModels::SceneModels(const std::string& weights, const std::string& selectio
     scorers_["discriminator"] = outpaint::discriminator_scorer(*discriminator_);
   }
   if (wants("classifier")) {
-    classifier_ = std::make_unique<models::Classifier>(read("classifier.safetensors"));
+    const nn::Weights classifier = read("classifier.safetensors");
+    if (!classifier.has_prefix("classifier.") && !classifier.has("fc.weight")) {
+      throw Error(classifier.name(), "holds no classifier of scenes", "--select discriminator");
+    }
+    classifier_ = std::make_unique<models::Classifier>(classifier);
     scorers_["classifier"] = outpaint::entropy_scorer(*classifier_);
   }
   check_codes(*autoencoder_, *pixel_cnn_, weights_of(weights, "pixelcnn.safetensors").string());

@@ -28,6 +28,10 @@ const std::vector<std::string>& selection_names();
 void check_codes(const models::Autoencoder& autoencoder, const models::PixelCnn& pixel_cnn,
                  const std::string& file);
 
+/// @brief Throws ps::Error when the PixelCNN's file bears the mark of a codebook
+/// (models/codebook_mark.h), and the autoencoder's is another. A file without one passes.
+void check_codebook(const nn::Weights& autoencoder, const std::filesystem::path& pixel_cnn);
+
 /// @brief The networks of a scene, from weights files.
 class SceneModels {
  public:

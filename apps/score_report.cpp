@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "apps/output.h"
+#include "io/atomic_file.h"
 #include "libps/core/error.h"
 
 namespace ps::apps {
@@ -190,9 +191,11 @@ void check_score_files(const std::string& output,
 
 void write_score_files(const std::string& output, const Json& report, const ScoreSummary& summary,
                        const ScoreTable* table) {
+  AtomicFiles files;
   write_text(summary_file(output), to_csv(summary));
   if (table != nullptr) write_text(samples_file(output), to_csv(*table));
   write_json(output, report);
+  files.commit();
 }
 
 void end_scores(const Context& context, ScoreRun run, const Stopwatch& total) {

@@ -10,6 +10,7 @@
 #include "apps/output.h"
 #include "apps/program.h"
 #include "apps/report.h"
+#include "io/atomic_file.h"
 #include "io/depth_file.h"
 #include "io/photo.h"
 
@@ -97,9 +98,11 @@ void run_depth(const DepthArguments& a, const Context& context) {
   }
   report["seconds"] = {{"estimate", estimate_seconds}};
   add_costs(report, total);
+  AtomicFiles files;
   write_image(preview, picture);
   write_json(report_file, report);
   write_depth(a.output, depth);
+  files.commit();
   end_run(context, report, a.output,
           "depth of " + std::to_string(depth.cols) + "x" + std::to_string(depth.rows) +
               " pixels, estimated (metres are not promised)");

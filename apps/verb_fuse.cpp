@@ -5,7 +5,6 @@
 #include <memory>
 #include <set>
 #include <sstream>
-#include <system_error>
 
 #include "apps/frame_list.h"
 #include "apps/fuse_report.h"
@@ -15,6 +14,7 @@
 #include "apps/program.h"
 #include "apps/progress.h"
 #include "apps/report.h"
+#include "io/atomic_file.h"
 #include "io/cloud_file.h"
 #include "io/intrinsics_file.h"
 #include "io/trajectory.h"
@@ -131,27 +131,22 @@ void check_outputs(const std::string& output) {
   for (const char* name : kBeside) check_output_file(beside(output, name), {});
 }
 
-/// The poses of an earlier run, which held frames out, would be taken for this one's.
-void remove_stale(const std::filesystem::path& path) {
-  std::error_code failure;
-  std::filesystem::remove(path, failure);
-  if (failure) throw Error(path.string(), "cannot be removed: " + failure.message());
-}
-
-/// How the cloud was made and where from, and last the cloud: where it is, all is.
+/// How the cloud was made and where from, and the cloud, all at once.
 void write_all(const FuseArguments& a, const Cloud& cloud, const FrameList& frames,
                const Json& settings, const Json& report) {
   const std::filesystem::path output(a.output);
+  AtomicFiles files;
   write_json(beside(output, "settings.json"), settings);
   write_json(beside(output, "report.json"), report);
   write_trajectory(beside(output, "trajectory.txt"), poses_of(frames.used));
   write_intrinsics(beside(output, "intrinsics.json"), frames.used.front().folder->intrinsics);
-  if (frames.held_out.empty()) {
-    remove_stale(beside(output, "held-out.txt"));
+  if (frames.held_out.empty()) {  // an earlier run's would be taken for this one's
+    files.remove(beside(output, "held-out.txt"));
   } else {
     write_trajectory(beside(output, "held-out.txt"), poses_of(frames.held_out));
   }
   write_cloud(output, cloud, up_axis(world_from_cams(frames)), a.compress);
+  files.commit();
 }
 
 /// All that the command line alone can tell. @return the arguments, with what follows from others

@@ -157,7 +157,7 @@ Json write_path(const SceneArguments& a, const SceneMaker& scene, const std::str
 void write_scene(OutputFolder& folder, const SceneMaker& scene,
                  const std::vector<Picture>& pictures, const Intrinsics& lens) {
   folder.write("scene.ply",
-               [&](const Path& file) { write_cloud(file, scene.cloud(), scene.input().up); });
+               [&](const Path& file) { write_cloud(file, scene.cloud(), scene.up()); });
   std::vector<StampedPose> poses;
   for (const Picture& picture : pictures) {
     throw_if_interrupted();
@@ -176,8 +176,8 @@ void make_scene(const SceneArguments& a, const Json& settings, SceneMaker& scene
   OutputFolder folder(a.output);
   scene.make();
   constexpr int kNetworks = 256;  // pixels of a short side that networks see
-  const Intrinsics lens = lens_of_pictures(scene.input().views.front().intrinsics, a.view_size,
-                                           scene.models() != nullptr ? kNetworks : 1);
+  const Intrinsics lens =
+      lens_of_pictures(scene.lens(), a.view_size, scene.models() != nullptr ? kNetworks : 1);
   scene.keep_to_budget(planned_views(a, scene, lens));
   ViewRenderer renderer = renderer_of(scene, context);
   Stopwatch watch;

@@ -15,6 +15,7 @@
 #include "apps/report.h"
 #include "io/weights_file.h"
 #include "libps/core/error.h"
+#include "libps/models/codebook_mark.h"
 
 namespace ps::apps {
 namespace {
@@ -24,6 +25,7 @@ struct WeightsArguments {
   std::string out;
   std::string type = "f32";
   std::string prefix;
+  std::string codes;
 };
 
 /// One line of the table.
@@ -187,16 +189,26 @@ FloatType type_of(const std::string& name) {
   return name == "f16" ? FloatType::f16 : name == "bf16" ? FloatType::bf16 : FloatType::f32;
 }
 
+/// The words beside the tensors; a PixelCNN's say which codebook it continues.
+Metadata words_of(const WeightsArguments& a) {
+  Metadata words = read_metadata(a.in);
+  if (a.codes.empty()) return words;
+  const nn::Weights autoencoder = read_weights(a.codes);
+  words[models::kCodebookMark] =
+      models::codebook_mark(autoencoder.get("vqvae.quantize_t.embed", {0, 0}).values);
+  return words;
+}
+
 void run_convert(const WeightsArguments& a, const Context& context) {
   check_output_file(a.out, {".safetensors"});
-  check_not_input(a.out, {a.in});
+  check_not_input(a.out, {a.in, a.codes});
   note_interrupts();
+  const Metadata words = words_of(a);
   TensorMap tensors = with_prefix(read_weight_tensors(a.in), a);
   const std::vector<Summary> summaries = summarise(tensors);
   warn_of_bad_values(summaries, context);
   throw_if_interrupted();
-  write_safetensors(a.out, stored_as(std::move(tensors), type_of(a.type), a.out),
-                    read_metadata(a.in));
+  write_safetensors(a.out, stored_as(std::move(tensors), type_of(a.type), a.out), words);
   const Count total = total_of(count_modules(summaries));
   print_report(context, {{"input", a.in},
                          {"output", a.out},
@@ -241,6 +253,10 @@ void add_convert(CLI::App& weights, const Context& context) {
                    "classifier's own file")
       ->type_name("NAME")
       ->check(CLI::Validator(check_prefix, ""));
+  verb->add_option("--codes", a->codes,
+                   "Of a PixelCNN: the autoencoder that it was trained with. The file then says "
+                   "so, and scene refuses another")
+      ->type_name("FILE");
   verb->callback([a, &context] { run_convert(*a, context); });
 }
 

@@ -36,15 +36,21 @@ fs::path checked_place(const fs::path& path) {
   throw Error(path.string(), doing + std::generic_category().message(code));
 }
 
+/// The number comes first, as a long name must keep its extension.
+fs::path name_beside(const fs::path& path) {
+  std::random_device random;
+  return path.parent_path() / (".ps-" + std::to_string(random()) + path.extension().string());
+}
+
+/// Those that the files of this thread wait in.
+thread_local AtomicFiles* together = nullptr;
+
 }  // namespace
 
 AtomicFile::AtomicFile(const fs::path& path) : path_(checked_place(path)) {
-  std::random_device random;
   // open() and not mkstemp(): the file gets the permissions that the user's umask asks for.
   for (int attempt = 0; attempt < 100 && descriptor_ < 0; ++attempt) {
-    // The number comes first, as a long name must keep its extension.
-    const std::string name = ".ps-" + std::to_string(random()) + path_.extension().string();
-    temporary_ = path_.parent_path() / name;
+    temporary_ = name_beside(path_);
     descriptor_ = open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0 && errno != EEXIST) break;
   }
@@ -70,10 +76,57 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
 
 void AtomicFile::commit() {
   if (fsync(descriptor_) != 0) fail(path_, "writing failed: ", errno);
-  if (rename(temporary_.c_str(), path_.c_str()) != 0)
+  if (together != nullptr) {
+    together->files_.push_back({temporary_, path_, {}, false});
+  } else if (rename(temporary_.c_str(), path_.c_str()) != 0) {
     fail(path_, "cannot be put in place: ", errno);
+  }
   close(descriptor_);
   descriptor_ = -1;
+}
+
+AtomicFiles::AtomicFiles() : outer_(together) { together = this; }
+
+AtomicFiles::~AtomicFiles() {
+  together = outer_;
+  for (const Waiting& file : files_) {
+    if (!file.temporary.empty()) unlink(file.temporary.c_str());
+  }
+}
+
+void AtomicFiles::remove(const fs::path& path) { files_.push_back({{}, path, {}, false}); }
+
+void AtomicFiles::commit() {
+  for (std::size_t i = 0; i < files_.size(); ++i) {
+    Waiting& file = files_[i];
+    const fs::path before = name_beside(file.place);
+    if (link(file.place.c_str(), before.c_str()) == 0) file.before = before;
+    file.is_new = file.before.empty() && errno == ENOENT;
+    const bool clears = file.temporary.empty();
+    const int result =
+        clears ? unlink(file.place.c_str()) : rename(file.temporary.c_str(), file.place.c_str());
+    if (result == 0 || (clears && errno == ENOENT)) continue;
+    const int code = errno;
+    undo(i + 1);
+    fail(file.place, clears ? "cannot be removed: " : "cannot be put in place: ", code);
+  }
+  for (const Waiting& file : files_) {
+    if (!file.before.empty()) unlink(file.before.c_str());
+  }
+  files_.clear();
+}
+
+/// Of the first `count` files the last one failed.
+void AtomicFiles::undo(std::size_t count) {
+  if (!files_[count - 1].before.empty()) unlink(files_[count - 1].before.c_str());
+  for (std::size_t i = count - 1; i-- > 0;) {
+    const Waiting& file = files_[i];
+    if (!file.before.empty()) {
+      rename(file.before.c_str(), file.place.c_str());
+    } else if (file.is_new && !file.temporary.empty()) {
+      unlink(file.place.c_str());
+    }
+  }
 }
 
 }  // namespace ps

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace ps {
 
@@ -22,13 +23,44 @@ class AtomicFile {
   const std::filesystem::path& temporary() const { return temporary_; }
   void write(const void* data, std::size_t bytes);
   void write(const std::string& text) { write(text.data(), text.size()); }
-  /// Flushes, checks, and puts the file in its place. Throws ps::Error when the disk is full. Once.
+  /// Flushes, checks, and puts the file in its place, or hands it to the AtomicFiles that live on
+  /// this thread. Throws ps::Error when the disk is full. Once.
   void commit();
 
  private:
   std::filesystem::path path_;
   std::filesystem::path temporary_;
   int descriptor_ = -1;
+};
+
+/// @brief Files that appear together or not at all. Every AtomicFile that this thread commits
+/// while the object lives waits beside its place, whichever function writes it, until all are put
+/// in place.
+class AtomicFiles {
+ public:
+  AtomicFiles();
+  ~AtomicFiles();  ///< removes what was not committed
+  AtomicFiles(const AtomicFiles&) = delete;
+  AtomicFiles& operator=(const AtomicFiles&) = delete;
+
+  /// An earlier file of this name goes when the others come.
+  void remove(const std::filesystem::path& path);
+  /// Puts all in their places. Throws ps::Error when one cannot be; then the places hold again what
+  /// they held (but for files replaced before it where the file system has no hard links).
+  void commit();
+
+ private:
+  friend class AtomicFile;
+  struct Waiting {
+    std::filesystem::path temporary;  ///< empty: the place is to be cleared
+    std::filesystem::path place;
+    std::filesystem::path before;  ///< what was there, under another name
+    bool is_new = false;           ///< nothing was there
+  };
+  void undo(std::size_t count);
+
+  AtomicFiles* outer_;
+  std::vector<Waiting> files_;
 };
 
 }  // namespace ps

@@ -12,6 +12,7 @@
 
 #include "io/atomic_file.h"
 #include "io/bytes.h"
+#include "io/hush.h"
 
 namespace ps {
 namespace {
@@ -241,6 +242,7 @@ cv::Mat decode_image(std::string_view bytes, int flags, const std::string& name)
   }
   if (bytes.size() > INT_MAX) throw Error(name, "is larger than 2 GiB", "a smaller image");
   const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
+  const Hush hush;
   cv::Mat image = cv::imdecode(raw, flags);
   if (image.empty()) {
     throw Error(name, "cannot be decoded: damaged, truncated, or of an unusual kind",

@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kRowsAtATime = 16;
 /// In units of noise_of(): three sigma of normal noise. Two such jumps in a row are rare.
 constexpr float kNoisyJump = 3.6f;
+constexpr double kLongestLens = 2;  ///< short sides of the image; 48 mm on 36 mm x 24 mm
 
 /// Positive and finite; written without branches, for whole rows at once.
 bool known(float depth) {
@@ -66,6 +67,16 @@ float noise_of(const Depth& clean) {
   return *middle;
 }
 
+/// The least step of depth, as a share of it, that sets flying pixels apart.
+float jump_per_metre(const Depth& clean, const Intrinsics& k, const LiftOptions& options) {
+  double footprint = k.footprint_per_metre();
+  if (options.estimated) {
+    footprint = std::max(footprint, 1 / (kLongestLens * std::min(k.width, k.height)));
+  }
+  return std::max(static_cast<float>(options.edge_footprints * footprint),
+                  kNoisyJump * noise_of(clean));
+}
+
 Point make_point(const Eigen::Vector3d& position, const cv::Vec3f& rgb, double footprint,
                  std::uint16_t view_number, Origin origin) {
   Point p;
@@ -92,15 +103,12 @@ Mask liftable(const Depth& depth, const Intrinsics& intrinsics, const LiftOption
     }
   });
   if (options.edge_footprints <= 0) return result;
-  const auto jump_per_metre =
-      std::max(static_cast<float>(options.edge_footprints * intrinsics.footprint_per_metre()),
-               kNoisyJump * noise_of(clean));
+  const float jump = jump_per_metre(clean, intrinsics, options);
   parallel_chunks(depth.rows, kRowsAtATime, [&](std::size_t begin, std::size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       const auto clear = [&](int dy, int dx) {
         if (y < dy || y + dy >= depth.rows) return;
-        clear_flying(clean[y], clean[y - dy], clean[y + dy], dx, depth.cols, jump_per_metre,
-                     result[y]);
+        clear_flying(clean[y], clean[y - dy], clean[y + dy], dx, depth.cols, jump, result[y]);
       };
       clear(0, 1);
       clear(1, 0);

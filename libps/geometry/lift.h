@@ -15,6 +15,10 @@ struct LiftOptions {
   /// footprints behind one and before the other. 0 keeps them all. 8 is a surface seen at 83
   /// degrees. Where the image is so noisy that chance alone would give as much, it takes more.
   double edge_footprints = 8;
+  /// Depth that a network guessed from the picture: as it knows nothing of the lens, its steps from
+  /// one pixel to the next are no smaller for a long one. Of lenses longer than two short sides of
+  /// the image, flying pixels are then told as through one of two.
+  bool estimated = false;
 };
 
 /// @brief Which pixels of a depth image stand for a surface.

@@ -60,7 +60,9 @@ SceneCloud& SceneCloud::operator=(SceneCloud&&) noexcept = default;
 AddReport SceneCloud::add(const View& view, std::uint16_t view_number, Origin origin,
                           const Mask& pixels) {
   check(view, "view " + std::to_string(view_number));
-  Mask usable = liftable(view.depth, view.intrinsics, impl_->options.lift);
+  LiftOptions options = impl_->options.lift;
+  if (origin == Origin::outpainted) options.estimated = true;
+  Mask usable = liftable(view.depth, view.intrinsics, options);
   if (!pixels.empty()) {
     if (pixels.size() != usable.size()) {
       throw Error("view " + std::to_string(view_number), "mask and photo differ in size",

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <opencv2/imgproc.hpp>
+#include <utility>
 #include <vector>
 
 #include "libps/core/error.h"
@@ -20,6 +22,56 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// An observed view at the size at which it was added, without its colour.
+struct Observed {
+  View view;
+  std::function<Depth()> depth_again;  ///< where the view has no depth either
+
+  View with_depth() const {
+    if (!depth_again) return view;
+    View whole = view;
+    const cv::Size size(view.intrinsics.width, view.intrinsics.height);
+    const Depth depth = depth_again();
+    if (depth.empty()) throw Error("scene", "the depth of an observed view is gone");
+    cv::resize(depth, whole.depth, size, 0, 0, cv::INTER_NEAREST_EXACT);  // as enlarged() does
+    return whole;
+  }
+};
+
+/// Whether a camera may see one of the pixels, once lifted.
+bool in_sight(const View& view, const Mask& pixels, const View& camera) {
+  constexpr double kMargin = 1;  // pixels; of rounding
+  const Pose camera_from_view = camera.world_from_cam.inverse() * view.world_from_cam;
+  const Intrinsics& k = camera.intrinsics;
+  for (int y = 0; y < pixels.rows; ++y) {
+    for (int x = 0; x < pixels.cols; ++x) {
+      if (!pixels(y, x)) continue;
+      const Eigen::Vector3d p = camera_from_view * view.intrinsics.lift(x, y, view.depth(y, x));
+      if (!(p.z() > 0)) continue;
+      const Eigen::Vector2d at = k.project(p);
+      if (at.x() > -kMargin && at.y() > -kMargin && at.x() < k.width + kMargin &&
+          at.y() < k.height + kMargin) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Of the pixels, those that would stand where an observed view looked through. One view's depth is
+/// held at a time.
+Mask refused_by(const std::vector<Observed>& observed, const SupportView& support,
+                const FreeSpaceOptions& options) {
+  Mask left = support.pixels.clone(), refused = Mask::zeros(left.size());
+  for (const Observed& o : observed) {
+    if (!in_sight(support.view, left, o.view)) continue;
+    const Mask before = in_free_space(support.view, left, {o.with_depth()}, options);
+    refused.setTo(1, before);
+    left.setTo(0, before);
+  }
+  return refused;
+}
+
 }  // namespace
 
 struct SceneBuilder::Impl {
@@ -27,7 +79,7 @@ struct SceneBuilder::Impl {
   SceneOptions options;
   Intrinsics lens;
   SceneCloud cloud;
-  std::vector<View> observed;  ///< without their colours
+  std::vector<Observed> observed;
   Cloud points;
   bool changed = true;
   outpaint::Outpainter outpainter;
@@ -57,12 +109,15 @@ const Cloud& SceneBuilder::cloud() {
   return impl_->points;
 }
 
-AddReport SceneBuilder::observe(const View& view, std::uint16_t number) {
+AddReport SceneBuilder::observe(const View& view, std::uint16_t number,
+                                std::function<Depth()> depth_again) {
   check(view, "view " + std::to_string(number));
   const View large = enlarged(view);
   const AddReport report = impl_->cloud.add(large, number, Origin::observed);
   impl_->changed = true;
-  impl_->observed.push_back({{}, large.depth.clone(), large.intrinsics, large.world_from_cam});
+  const Depth held = depth_again ? Depth() : Depth(large.depth.clone());
+  impl_->observed.push_back(
+      {{{}, held, large.intrinsics, large.world_from_cam}, std::move(depth_again)});
   return report;
 }
 
@@ -130,8 +185,7 @@ SupportView SceneBuilder::outpaint(const Pose& world_from_cam, std::uint16_t num
   support.pixels = seen.missing & (near.hit == 0);
   support.pixels.setTo(1, support.pixels);
   report.pixels = static_cast<std::size_t>(cv::countNonZero(support.pixels));
-  const Mask before =
-      in_free_space(support.view, support.pixels, impl.observed, impl.options.free_space);
+  const Mask before = refused_by(impl.observed, support, impl.options.free_space);
   support.pixels.setTo(0, before);
   report.refused = static_cast<std::size_t>(cv::countNonZero(before));
   return support;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -68,7 +69,10 @@ class SceneBuilder {
   /// @brief Adds what a camera saw. A view whose short side is below 256 pixels is enlarged to
   /// that, so that its splats leave no holes in the networks' view. Throws ps::Error as
   /// SceneCloud::add() does.
-  AddReport observe(const View& view, std::uint16_t number);
+  /// @param depth_again  gives the view's depth once more, the same; called by outpaint() where the
+  /// view may tell of free space. Without it the depth is held.
+  AddReport observe(const View& view, std::uint16_t number,
+                    std::function<Depth()> depth_again = {});
 
   /// @brief Outpaints a view and makes its depth continue the cloud; the cloud stays as it is.
   /// A function of (networks, options, what was observed, cloud, pose, number). Where nothing is

@@ -11,9 +11,10 @@ StrategyScene::StrategyScene(Strategy strategy, const SceneNetworks& networks,
   if (strategy == Strategy::independent) observed_.emplace(networks, lens, options);
 }
 
-AddReport StrategyScene::observe(const View& view, std::uint16_t number) {
-  if (observed_) observed_->observe(view, number);
-  return scene_.observe(view, number);
+AddReport StrategyScene::observe(const View& view, std::uint16_t number,
+                                 const std::function<Depth()>& depth_again) {
+  if (observed_) observed_->observe(view, number, depth_again);
+  return scene_.observe(view, number, depth_again);
 }
 
 SupportView StrategyScene::outpaint(const Pose& world_from_cam, std::uint16_t number) {

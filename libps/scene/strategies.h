@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -19,7 +20,8 @@ class StrategyScene {
                 const SceneOptions& options = {});
 
   // As SceneBuilder's.
-  AddReport observe(const View& view, std::uint16_t number);
+  AddReport observe(const View& view, std::uint16_t number,
+                    const std::function<Depth()>& depth_again = {});
   SupportView outpaint(const Pose& world_from_cam, std::uint16_t number);
   AddReport add(const SupportView& support, std::uint16_t number);
   const Cloud& cloud() { return scene_.cloud(); }

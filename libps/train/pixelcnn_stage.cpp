@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libps/core/error.h"
+#include "libps/models/codebook_mark.h"
 #include "libps/train/autoencoder.h"
 #include "libps/train/completions.h"
 #include "libps/train/pixel_cnn.h"
@@ -121,6 +122,15 @@ class PixelCnnStage : public Stage {
   }
 
   std::vector<Trained> networks() override { return {{&net_.parameters, &adam_}}; }
+
+  std::map<std::string, std::string> metadata() const override {
+    const Tensor embed = autoencoder_.parameters["quantize_t.embed"]
+                             .detach()
+                             .to(torch::kCPU, torch::kFloat32)
+                             .contiguous();
+    const auto* values = embed.data_ptr<float>();
+    return {{models::kCodebookMark, models::codebook_mark({values, values + embed.numel()})}};
+  }
 
  private:
   static Adam::Options adam_options() {

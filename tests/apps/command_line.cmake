@@ -89,9 +89,13 @@ app_test(outputs_that_cannot_be_are_refused_before_the_work [=[
   fails 1 's/.* is a f' -q scene $S/photo.png --depth $S/depth.png --no-outpaint -o s
   fails 1 'is a file' scene $S/photo.png --depth $S/depth.png --no-outpaint -o file]=])
 app_test(bad_photos_fail_with_one_line [=[
-  for f in nothing.jpg truncated.jpg truncated.png text.png; do
+  for f in nothing.jpg truncated.jpg truncated.png text.png damaged.png damaged.bmp damaged.ppm damaged.pgm damaged.tiff damaged.webp; do
     fails 1 $f scene $S/$f --depth $S/depth.png --no-outpaint -o a
   done]=])
+app_test(decoders_print_nothing_of_their_own [=[
+  works scene $S/damaged.jpg --depth $S/depth.png --fov 60 --no-outpaint -o s
+  is "$(wc -l <"$work/err")" -eq 1
+  says '^s: .* points']=])
 app_test(bad_clouds_fail_with_one_line [=[
   for f in empty.ply promise.ply photo.png; do
     fails 1 $f render $S/$f -o a.png
@@ -123,6 +127,47 @@ app_test(failures_name_the_output_and_no_unfinished_file [=[
   trap '' XFSZ
   fails 1 ' r/frame_00000.png: writing failed' -q render $S/mixed.ply -o r
   fails 1 ' s/scene.ply: writing failed' -q scene $S/photo.png --depth $S/depth.png --no-outpaint -o s]=])
+app_test(a_full_disk_leaves_all_outputs_or_none [=[
+  works fuse $S/walk -o a.ply --every 3 --hold-out 2
+  works depth $S/photo.png -o d.pfm --weights $S/depth.safetensors
+  cp -r . ../before
+  trap '' XFSZ
+  ulimit -f 20
+  fails 1 ' a.ply: writing failed' -q fuse $S/walk -o a.ply
+  fails 1 ' b.ply: writing failed' -q fuse $S/walk -o b.ply
+  fails 1 ' d.pfm: writing failed' -q depth $S/noise.png -o d.pfm --weights $S/depth.safetensors
+  fails 1 ' e.pfm: writing failed' -q depth $S/noise.png -o e.pfm --weights $S/depth.safetensors
+  diff -r . ../before]=])
+# A process of number 4194305 there never is.
+app_test(what_a_killed_run_left_is_removed_by_the_next [=[
+  "$program" -q render $S/mixed.ply -o a --size 1024x768 --frames 5000 & pid=$!
+  for i in $(seq 300); do
+    [ ! -e a.partial-$pid/frame_00001.png ] || break
+    sleep 0.1
+  done
+  kill -KILL $pid
+  wait $pid || true
+  is -e a.partial-$pid/frame_00001.png
+  mkdir a.partial-$$ a.partial-x a.partial-04194305 a.partial-4194305x b.partial-4194305 a.partial-4194306
+  ln -s b.partial-4194305 a.partial-4194307
+  touch a.partial-4194308 b.partial-4194305/file
+  pixelsynth -q render $S/mixed.ply -o a --frames 2
+  is ! -e a.partial-$pid
+  is ! -e a.partial-4194306
+  is "$(ls | grep -c partial)" -eq 7
+  writes a/frame_00001.png
+  is -e b.partial-4194305/file]=])
+app_test(what_another_run_holds_is_not_removed [=[
+  needs flock
+  mkdir a.partial-4194305
+  flock --no-fork a.partial-4194305 sleep 30 & holder=$!
+  for i in $(seq 100); do
+    flock -n a.partial-4194305 true || break
+    sleep 0.1
+  done
+  pixelsynth -q render $S/mixed.ply -o a --frames 2
+  is -d a.partial-4194305
+  kill $holder]=])
 # env: a script's jobs in the background begin with SIGINT ignored.
 app_test(an_interrupt_leaves_nothing [=[
   for signal in INT TERM; do

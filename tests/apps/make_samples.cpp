@@ -158,10 +158,29 @@ void write_clouds(const fs::path& dir) {
   write_text(dir / "nans.ply", header + "2" + fields + "nan 0 1\n0 0 inf\n");
 }
 
+/// The photo, changed where its decoder complains of it; a JPEG is decoded all the same.
+void write_damaged(const fs::path& dir, const std::string& kind) {
+  cv::Mat bytes;
+  view_from(Pose::Identity()).color.convertTo(bytes, CV_8U, 255);
+  if (kind == ".pgm") cv::cvtColor(bytes, bytes, cv::COLOR_RGB2GRAY);
+  std::vector<unsigned char> file;
+  cv::imencode(kind, bytes, file);
+  if (kind == ".png") file[file.size() / 2] ^= 1;  // of compressed pixels
+  if (kind == ".bmp") file[28] = 77;               // bits of a pixel
+  if (kind[1] == 'p' && kind[3] == 'm') file.resize(file.size() / 2);
+  if (kind == ".tiff") file[file.size() - 9] ^= 0xff;
+  if (kind == ".webp") file[30] ^= 0xff;
+  if (kind == ".jpg") file.erase(file.end() - 500, file.end() - 2);  // compressed pixels
+  write_text(dir / ("damaged" + kind), {file.begin(), file.end()});
+}
+
 void write_bad_files(const fs::path& dir) {
   write_text(dir / "nothing.jpg", "");
   write_text(dir / "truncated.jpg", bytes_of(dir / "photo.jpg").substr(0, 400));
   write_text(dir / "truncated.png", bytes_of(dir / "photo.png").substr(0, 200));
+  for (const char* kind : {".png", ".bmp", ".ppm", ".pgm", ".tiff", ".webp", ".jpg"}) {
+    write_damaged(dir, kind);
+  }
   write_text(dir / "text.png", "this is no picture\n");
   write_text(dir / "nan.txt", "0 nan 0 0 0 0 0 1\n");
   write_text(dir / "twice.txt", "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n");
@@ -256,13 +275,51 @@ void write_depth_networks(const fs::path& dir) {
   write("turned_scale.safetensors", {{"min_z", "10"}, {"max_z", "1"}});
 }
 
+void add_tensors(const nn::Weights& weights, const std::string& wrapper, TensorMap& tensors) {
+  for (const auto& [name, tensor] : weights.tensors()) {
+    tensors[wrapper + name] = FileTensor::of(tensor.values, tensor.shape);
+  }
+}
+
+/// All networks by chance in one file, as the published checkpoint has them: under its wrappers,
+/// with its two depths, with a tensor that nothing needs, and without a classifier.
+void write_published(const fs::path& dir) {
+  const std::string wrapper = "model.module.";
+  TensorMap tensors;
+  add_tensors(models::random_depth_net(4), wrapper, tensors);
+  add_tensors(models::random_autoencoder(16, 8, 8, 24), wrapper, tensors);
+  add_tensors(models::random_pixel_cnn(11, 24), wrapper, tensors);
+  add_tensors(models::random_refiner(8), wrapper, tensors);
+  add_tensors(models::random_discriminator(8), "netD.netD.", tensors);
+  tensors[wrapper + "min_z"] = FileTensor::of(std::vector<float>{0.5f}, {1});
+  tensors[wrapper + "max_z"] = FileTensor::of(std::vector<float>{10}, {1});
+  tensors[wrapper + "pts_transformer.xyzs"] = FileTensor::of(std::vector<float>(12), {1, 4, 3});
+  write_safetensors(dir / "published.safetensors", tensors);
+}
+
+/// A PixelCNN that continues one autoencoder's codes, and another autoencoder of as many.
+void write_mixed_codes(const fs::path& dir) {
+  fs::create_directories(dir / "mixed");
+  const auto write = [&](const char* name, const nn::Weights& weights, const Metadata& words) {
+    TensorMap tensors;
+    add_tensors(weights, "", tensors);
+    write_safetensors(dir / "mixed" / name, tensors, words);
+  };
+  fs::copy_file(dir / "depth.safetensors", dir / "mixed" / "depth.safetensors");
+  nn::Weights autoencoder = models::random_autoencoder(16, 8, 8, 24);
+  write("vqvae.safetensors", autoencoder, {});
+  std::map<std::string, nn::WeightTensor> others = autoencoder.tensors();
+  std::vector<float>& embed = others.at("vqvae.quantize_t.embed").values;
+  std::rotate(embed.begin(), embed.begin() + 1, embed.end());
+  write("other.safetensors", {"other", others}, {});
+  write("pixelcnn.safetensors", models::random_pixel_cnn(11, 24), {});
+  write("refine.safetensors", models::random_refiner(8), {});
+}
+
 /// A narrow LPIPS by chance.
 void write_lpips(const fs::path& dir) {
-  const nn::Weights weights = models::random_lpips(8);
   TensorMap tensors;
-  for (const auto& [name, tensor] : weights.tensors()) {
-    tensors[name] = FileTensor::of(tensor.values, tensor.shape);
-  }
+  add_tensors(models::random_lpips(8), "", tensors);
   write_safetensors(dir / "lpips.safetensors", tensors);
 }
 
@@ -311,6 +368,8 @@ int main(int argc, char** argv) try {
   ps::write_tensors(dir);
   ps::write_weights(dir);
   ps::write_depth_networks(dir);
+  ps::write_published(dir);
+  ps::write_mixed_codes(dir);
   ps::write_lpips(dir);
   ps::write_sized_photos(dir);
   return 0;

@@ -84,6 +84,21 @@ app_test(scene_of_odd_depths [=[
     is "$(json outpainted $d/report.json)" -gt 1000
   done
   grep -A3 '"filled"' holes/report.json | grep -q pixels]=])
+app_test(scene_takes_one_file_of_all_networks_as_published [=[
+  args="scene $S/photo.png --fov 60 --samples 1 --directions left"
+  works $args -o s --select discriminator --weights $S/published.safetensors
+  is "$(json outpainted s/report.json)" -gt 1000
+  is "$(grep -c 'does not say which depths' "$work/err")" -eq 0
+  works weights convert $S/published.safetensors -o all.safetensors
+  works $args -o t --select discriminator --weights all.safetensors
+  cmp s/scene.ply t/scene.ply
+  works depth $S/photo.png --fov 60 -o d.pfm --weights all.safetensors --json
+  fails 1 'published.safetensors.*classifier.*--select discriminator' -q $args -o u --weights $S/published.safetensors]=])
+app_test(scene_through_a_long_lens_keeps_its_pixels [=[
+  for fov in 2 5 10; do
+    works scene $S/photo.png --fov $fov --no-outpaint -o s
+    is "$(sed -n 's/.*"lifted": \([0-9]*\).*/\1/p' s/report.json)" -ge 5837
+  done]=])
 app_test(scene_keeps_to_a_budget [=[
   args="$S/photo.png --depth $S/depth.png --fov 70 --samples 1 --directions left"
   works scene $args -o all --budget none

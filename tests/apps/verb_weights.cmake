@@ -47,6 +47,18 @@ app_test(weights_convert_keeps_the_words_beside_the_tensors [=[
   works weights convert $S/weights.safetensors -o a.safetensors --type f16
   works weights info a.safetensors
   prints '^made_by: hand$']=])
+app_test(weights_convert_says_whose_codes_a_pixelcnn_continues [=[
+  cp -r $S/mixed w
+  args="scene $S/photo.png --fov 60 --samples 1 --directions left --select likelihood --weights w"
+  works weights convert $S/mixed/pixelcnn.safetensors -o w/pixelcnn.safetensors --codes w/vqvae.safetensors --type f16
+  works $args -o s
+  works weights convert $S/mixed/vqvae.safetensors -o w/vqvae.safetensors --type bf16
+  works $args -o s
+  mv w/other.safetensors w/vqvae.safetensors
+  fails 1 'w/pixelcnn.safetensors: continues other codes than those of w/vqvae.safetensors.* trained together' -q $args -o t
+  cp $S/mixed/pixelcnn.safetensors w/pixelcnn.safetensors
+  works $args -o t
+  fails 1 'quantize_t.embed' -q weights convert $S/mixed/pixelcnn.safetensors -o p.safetensors --codes w/refine.safetensors]=])
 app_test(weights_convert_names_a_tensor_that_does_not_fit_its_type "
   fails 1 \"a.safetensors, tensor 'fc.weight': .*100000.* too large for f16\" -q weights convert $S/bad_weights.safetensors -o a.safetensors --type f16")
 app_test(weights_convert_puts_a_prefix_before_names_without_a_network [=[

@@ -70,6 +70,32 @@ TEST(Lift, a_pixel_hanging_between_two_surfaces_is_dropped) {
   }
 }
 
+TEST(Lift, an_estimated_slope_is_not_steeper_for_a_longer_lens) {
+  View slope = flat_view(60, 50, 1);
+  for (int x = 0; x < 60; ++x) slope.depth.col(x) = std::exp(0.05f * static_cast<float>(x));
+  LiftOptions options;
+  const auto kept = [&](double focal, bool estimated) {
+    slope.intrinsics.fx = slope.intrinsics.fy = focal;
+    options.estimated = estimated;
+    return cv::countNonZero(liftable(slope.depth, slope.intrinsics, options));
+  };
+  for (const double focal : {30., 60., 99.}) EXPECT_EQ(kept(focal, true), 60 * 50);
+  for (const double focal : {101., 200., 1000., 10000.}) EXPECT_EQ(kept(focal, true), 60 * 50);
+  EXPECT_LT(kept(1000, false), 60 * 50 / 10);
+}
+
+TEST(Lift, estimated_depth_through_a_usual_lens_is_lifted_as_measured_depth_is) {
+  const Intrinsics k = intrinsics_from_fov(96, 64, 60);
+  View view = box_world_view(k, pose_at(0.5, 0.1, -2, 0.3, 0.2));
+  view.depth.col(40) = 0.5f * (view.depth.col(39) + view.depth.col(41)) + 0.3f;
+  for (int x = 50; x < 96; ++x) view.depth.col(x) *= std::exp(0.15f * static_cast<float>(x - 50));
+  LiftOptions estimated;
+  estimated.estimated = true;
+  const Mask measured = liftable(view.depth, k);
+  EXPECT_LT(cv::countNonZero(measured), 96 * 64);
+  EXPECT_EQ(cv::countNonZero(measured != liftable(view.depth, k, estimated)), 0);
+}
+
 TEST(Lift, a_clean_step_and_a_steep_slope_keep_all_pixels) {
   View step = flat_view(9, 9, 1);
   step.depth.colRange(5, 9) = 3;

@@ -9,6 +9,12 @@
 namespace ps {
 namespace {
 
+void put_atomic(const std::filesystem::path& path, const std::string& text) {
+  AtomicFile file(path);
+  file.write(text);
+  file.commit();
+}
+
 TEST(AtomicFile, appears_at_commit_and_not_before) {
   const Folder folder;
   AtomicFile file(folder / "a.txt");
@@ -63,6 +69,58 @@ TEST(AtomicFile, refuses_folders_devices_and_missing_folders) {
   EXPECT_TRUE(has(error_of([&] { AtomicFile file(""); }), "file name"));
   error_of([&] { AtomicFile file(folder / (std::string("a.") + std::string(300, 'x'))); });
   EXPECT_EQ(folder.entries(), 0);
+}
+
+TEST(AtomicFiles, appear_together_at_commit) {
+  const Folder folder;
+  put(folder / "b.txt", "old");
+  put(folder / "stale.txt", "old");
+  {
+    AtomicFiles files;
+    put_atomic(folder / "a.txt", "a");
+    put_atomic(folder / "b.txt", "b");
+    files.remove(folder / "stale.txt");
+    files.remove(folder / "absent.txt");
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
+    EXPECT_EQ(bytes_of(folder / "b.txt"), "old");
+    files.commit();
+  }
+  EXPECT_EQ(bytes_of(folder / "a.txt"), "a");
+  EXPECT_EQ(bytes_of(folder / "b.txt"), "b");
+  EXPECT_EQ(folder.entries(), 2);
+  put_atomic(folder / "a.txt", "alone again");
+  EXPECT_EQ(bytes_of(folder / "a.txt"), "alone again");
+}
+
+TEST(AtomicFiles, leave_nothing_when_not_committed) {
+  const Folder folder;
+  put(folder / "a.txt", "old");
+  {
+    AtomicFiles files;
+    put_atomic(folder / "a.txt", "a");
+    put_atomic(folder / "b.txt", "b");
+    files.remove(folder / "a.txt");
+  }
+  EXPECT_EQ(bytes_of(folder / "a.txt"), "old");
+  EXPECT_EQ(folder.entries(), 1);
+}
+
+TEST(AtomicFiles, leave_what_was_there_when_one_cannot_be_put_in_place) {
+  const Folder folder;
+  put(folder / "a.txt", "old");
+  put(folder / "stale.txt", "old");
+  {
+    AtomicFiles files;
+    put_atomic(folder / "a.txt", "a");
+    put_atomic(folder / "b.txt", "b");
+    files.remove(folder / "stale.txt");
+    put_atomic(folder / "c.txt", "c");
+    std::filesystem::create_directory(folder / "c.txt");
+    EXPECT_TRUE(has(error_of([&] { files.commit(); }), "c.txt: cannot be put in place"));
+  }
+  EXPECT_EQ(bytes_of(folder / "a.txt"), "old");
+  EXPECT_EQ(bytes_of(folder / "stale.txt"), "old");
+  EXPECT_EQ(folder.entries(), 3);
 }
 
 TEST(LineReader, counts_lines_of_either_ending_and_skips_the_byte_order_mark) {

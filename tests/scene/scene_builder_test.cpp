@@ -96,6 +96,33 @@ TEST(SceneBuilder, invented_points_never_stand_before_what_was_observed) {
   EXPECT_LT(static_cast<double>(before), 0.01 * static_cast<double>(invented));
 }
 
+TEST(SceneBuilder, depth_that_is_asked_for_again_is_as_good_as_depth_that_is_held) {
+  const Intrinsics small = intrinsics_from_fov(80, 64, 65);  // enlarged when it is observed
+  const Pose start = pose_at(0, 0, -1, 0.1);
+  Pose aside = turned(start, -0.2);
+  aside.translation() += Eigen::Vector3d(-0.4, 0, 0.2);
+  const std::vector<View> views = {box_world_view(small, start), box_world_view(small, aside),
+                                   box_world_view(small, turned(start, 3.1))};
+  SceneBuilder held(random_networks().all(), small, few_samples());
+  SceneBuilder asked(random_networks().all(), small, few_samples());
+  std::vector<int> calls(views.size(), 0);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const auto number = static_cast<std::uint16_t>(i);
+    held.observe(views[i], number);
+    asked.observe(views[i], number, [&, i] {
+      ++calls[i];
+      return views[i].depth;
+    });
+  }
+  Pose pose = turned(start, -0.3);
+  pose.translation() += Eigen::Vector3d(0.4, 0, 0.2);
+  const SupportView a = held.outpaint(pose, 3), b = asked.outpaint(pose, 3);
+  EXPECT_GT(a.report.refused, 0u);
+  EXPECT_EQ(a.report.refused, b.report.refused);
+  EXPECT_EQ(cv::countNonZero(a.pixels != b.pixels), 0);
+  EXPECT_EQ(calls, (std::vector<int>{1, 1, 0}));  // the last one looks the other way
+}
+
 TEST(SceneBuilder, what_is_outpainted_once_is_not_outpainted_again) {
   SceneBuilder scene = observed_scene();
   const Pose pose = turned(input_view().world_from_cam, 0.5);

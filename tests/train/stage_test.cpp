@@ -8,6 +8,7 @@
 #include "io/weights_file.h"
 #include "libps/models/autoencoder.h"
 #include "libps/models/classifier.h"
+#include "libps/models/codebook_mark.h"
 #include "libps/models/depth_net.h"
 #include "libps/models/discriminator.h"
 #include "libps/models/pixel_cnn.h"
@@ -95,6 +96,10 @@ TEST_F(Training, makes_a_refiner_and_a_discriminator_that_models_reads) {
 TEST_F(Training, makes_a_pixel_cnn_that_models_reads) {
   const models::PixelCnn net(trained("pixelcnn", "missing_bits"));
   EXPECT_EQ(net.codes(), 512);
+  const auto read = read_weights(options("pixelcnn", "pixelcnn").codes);
+  const std::vector<float> embed = read.tensors().at("vqvae.quantize_t.embed").values;
+  EXPECT_EQ(read_metadata(folder() / "pixelcnn" / "weights.safetensors").at(models::kCodebookMark),
+            models::codebook_mark(embed));
 }
 
 TEST_F(Training, shows_eight_completions_of_each_view) {
