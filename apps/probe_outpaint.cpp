@@ -18,7 +18,7 @@ struct SampleArguments {
   ProbeFiles files;
   std::string weights;
   bool greedy = false;
-  double temperature = 0.7;
+  double temperature = 0.5;
   int completion = 0;
 };
 

@@ -36,8 +36,10 @@ void SceneArguments::add_sampling_options(CLI::App& verb) {
   verb.add_option("--temperature", temperature, "Of the sampling; 0 = always the likeliest code")
       ->type_name("T")
       ->check(in_range(0, 2));
-  verb.add_option("--refine-best", refine_best,
-                  "Refine only so many completions, the best by a look at the unrefined; 0 = all")
+  verb.add_option(
+          "--refine-best", refine_best,
+          "With other judges than likelihood: refine only so many completions, the best by a "
+          "look at the unrefined; 0 = all")
       ->type_name("N")
       ->check(whole_in(0, 1000));
   verb.add_option(
@@ -49,7 +51,10 @@ void SceneArguments::add_sampling_options(CLI::App& verb) {
 
 void SceneArguments::add_outpaint_options(CLI::App& verb) {
   add_sampling_options(verb);
-  verb.add_option("--select", select, "What chooses the best completion")
+  verb.add_option("--select", select,
+                  "What keeps the best completion: likelihood = the PixelCNN's own, which refines "
+                  "that one alone; discriminator and classifier look at all refined; both = the "
+                  "sum of their ranks, as published")
       ->type_name("NAME")
       ->check(CLI::IsMember(selection_names()));
 }
@@ -174,7 +179,6 @@ SceneOptions SceneArguments::scene(const Context& context) const {
   o.temperature = temperature;
   o.refine_best = refine_best;
   o.seed = context.seed;
-  o.likelihood = select == "likelihood";
   return options;
 }
 

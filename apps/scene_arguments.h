@@ -29,9 +29,9 @@ struct SceneArguments {
   int views_per_direction = 2;
 
   std::string samples = "50";
-  double temperature = 0.7;
+  double temperature = 0.5;
   int refine_best = 0;
-  std::string select = "both";
+  std::string select = "likelihood";
 
   std::string budget;  ///< none, auto, points=N or psnr=DB; empty = auto where it outpaints
   int view_size = 1024;

@@ -23,8 +23,8 @@ std::string depth_weights(const std::string& weights) {
 }
 
 const std::vector<std::string>& selection_names() {
-  static const std::vector<std::string> names = {"both", "discriminator", "classifier",
-                                                 "likelihood"};
+  static const std::vector<std::string> names = {"likelihood", "discriminator", "classifier",
+                                                 "both"};
   return names;
 }
 

@@ -237,19 +237,15 @@ void add_eval_views(CLI::App& eval, const Context& context) {
       "views",
       std::string(
           "How near views come to true ones: of pairs of frames one is the input, and what each "
-          "method "
-          "shows from where the other stands is held against it. PSNR is over all pixels, those "
-          "whose "
-          "surface the input sees by true depth of both, and those that it does not. With --lpips "
-          "also "
-          "LPIPS, "
-          "and a Frechet distance on features that the table names: it is no FID.\n"
-          "Methods: ours; one-completion (of ours); by-classifier, by-discriminator, by-likelihood "
-          "(the best of all in the eyes of one); sequential, independent; no-outpainter (the "
-          "refiner "
-          "fills in); rgb (colours as codes); mean-colour, telea, navier-stokes, nearest (plain "
-          "fills "
-          "of what the cloud shows); copy (the input itself).") +
+          "method shows from where the other stands is held against it. PSNR is over all pixels, "
+          "those whose surface the input sees by true depth of both, and those that it does not. "
+          "With --lpips also LPIPS, and a Frechet distance on features that the table names: it is "
+          "no FID.\n"
+          "Methods: ours (keeps the likeliest completion); one-completion (of ours); "
+          "by-classifier, by-discriminator, by-both (keep the best in these eyes); sequential, "
+          "independent; no-outpainter (the refiner fills in); rgb (colours as codes); mean-colour, "
+          "telea, navier-stokes, nearest (plain fills of what the cloud shows); copy (the input "
+          "itself).") +
           kIntervalsHelp);
   auto a = std::make_shared<EvalViewsArguments>();
   a->frames.add_to(*verb);

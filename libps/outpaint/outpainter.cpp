@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "libps/core/error.h"
+#include "libps/outpaint/nearest_seen.h"
 #include "libps/outpaint/progress.h"
 #include "libps/outpaint/view_pictures.h"
 
@@ -61,6 +62,15 @@ std::vector<int> greatest(const std::vector<double>& scores, int count) {
   return numbers;
 }
 
+/// The number of the one of greatest likelihood.
+int likeliest(const std::vector<Completion>& completions) {
+  const auto less = [](const Completion& a, const Completion& b) {
+    return a.log_likelihood < b.log_likelihood;
+  };
+  return static_cast<int>(std::max_element(completions.begin(), completions.end(), less) -
+                          completions.begin());
+}
+
 /// About how long everything takes, for progress: milliseconds at the published widths.
 struct Work {
   double encode, sample, decode, refine, refine_rest, score;  ///< of one completion
@@ -75,12 +85,24 @@ struct Work {
     refine = 220 * changed / kView;
     refine_rest = changed < pixels ? 220 * pixels / kView : 0;
     score = 27 * static_cast<double>(scorers) * pixels / kView;
-    const bool few = options.refine_best > 0 && options.refine_best < samples;
-    const bool screens = few && options.screen == OutpaintOptions::Screen::unrefined;
+    const int asked = scorers == 0 ? 1 : options.refine_best;
+    const bool few = asked > 0 && asked < samples;
+    const bool screens = scorers > 0 && few && options.screen == OutpaintOptions::Screen::unrefined;
     whole = encode + refine_rest + samples * (sample + (screens ? decode + score : 0)) +
-            (few ? options.refine_best : samples) * (decode + refine + score) + decode + refine;
+            (few ? asked : samples) * (decode + refine + score) + decode + refine;
   }
 };
+
+/// The projection, with the nearest colours where it is missing.
+nn::Tensor continued(const nn::TensorView& projection, const cv::Mat1b& background) {
+  nn::Tensor whole(projection.shape);
+  const cv::Mat1i nearest = nearest_seen(background);
+  for (std::size_t i = 0; i < projection.shape.pixels(); ++i) {
+    const auto from = nearest.empty() ? i : static_cast<std::size_t>(nearest.ptr<int>()[i]);
+    std::copy_n(projection.pixel(from), 3, whole.view().pixel(i));
+  }
+  return whole;
+}
 
 bool all_finite(const nn::TensorView& image) {
   const float* end = image.pixel(image.shape.pixels());
@@ -108,11 +130,17 @@ Outpainter::Outpainter(Networks networks) : networks_(std::move(networks)) {
   }
 }
 
-std::vector<std::int32_t> Outpainter::encode(View& view, const nn::TensorView& projection) {
+std::vector<std::int32_t> Outpainter::encode(View& view, const nn::TensorView& projection,
+                                             const cv::Mat1b& background) {
   view.progress.at(0);
   const Clock clock(view.result.report.encode_seconds);
   std::vector<std::int32_t> codes(networks_.autoencoder->grid(projection.shape).pixels());
-  networks_.autoencoder->encode(projection, codes.data(), workspace_);
+  if (view.options.continue_colors) {
+    const nn::Tensor whole = continued(projection, background);
+    networks_.autoencoder->encode(whole, codes.data(), workspace_);
+  } else {
+    networks_.autoencoder->encode(projection, codes.data(), workspace_);
+  }
   return codes;
 }
 
@@ -187,6 +215,7 @@ void Outpainter::refine_and_score(View& view, const std::vector<int>& numbers) {
 
 /// The numbers of the completions that are worth refining.
 std::vector<int> Outpainter::screened(View& view) {
+  if (networks_.scorers.empty()) return {likeliest(view.completions)};
   const int count = view.options.refine_best;
   if (count == 0 || static_cast<std::size_t>(count) >= view.completions.size()) {
     return numbers_from(0, static_cast<int>(view.completions.size()));
@@ -209,18 +238,23 @@ std::vector<int> Outpainter::screened(View& view) {
 }
 
 void Outpainter::draw(View& view, Sampler& sampler) {
-  if (!view.options.until_settled) {
-    sample(view, sampler, view.samples);
-    return refine_and_score(view, screened(view));
-  }
+  if (view.options.until_settled) return draw_until_settled(view, sampler);
+  sample(view, sampler, view.samples);
+  refine_and_score(view, screened(view));
+}
+
+void Outpainter::draw_until_settled(View& view, Sampler& sampler) {
+  const bool judged = !networks_.scorers.empty();
   const int& drawn = view.result.report.drawn;
   for (int leader = -1; drawn < view.samples;) {
     const int count = std::min(OutpaintOptions::kRound, view.samples - drawn);
     sample(view, sampler, count);
-    refine_and_score(view, numbers_from(drawn - count, count));
-    if (view.result.best == leader && drawn >= 2 * (leader + 1)) break;
-    leader = view.result.best;
+    if (judged) refine_and_score(view, numbers_from(drawn - count, count));
+    const int best = judged ? view.result.best : likeliest(view.completions);
+    if (best == leader && drawn >= 2 * (leader + 1)) break;
+    leader = best;
   }
+  if (!judged) refine_and_score(view, screened(view));
 }
 
 Outpainted Outpainter::outpaint(const nn::TensorView& projection, const cv::Mat1b& background,
@@ -235,8 +269,10 @@ Outpainted Outpainter::outpaint(const nn::TensorView& projection, const cv::Mat1
     Progress(options.progress, 1).finish();
     return result;
   }
+  // One picture alone is soonest refined whole.
+  const bool region = options.region && !networks_.scorers.empty();
   ViewPictures pictures(*networks_.autoencoder, *networks_.refiner, projection, background,
-                        {options.seed, options.view}, options.region);
+                        {options.seed, options.view}, region);
   OutpaintReport& report = result.report;
   report.changed = pictures.changed();
   report.cells = order.size();
@@ -252,7 +288,7 @@ Outpainted Outpainter::outpaint(const nn::TensorView& projection, const cv::Mat1
   if (options.likelihood || networks_.scorers.empty()) {
     view.signals.push_back({{}, true, "log-likelihood"});
   }
-  Sampler sampler(*networks_.pixel_cnn, order, encode(view, projection));
+  Sampler sampler(*networks_.pixel_cnn, order, encode(view, projection, background));
   report.levels = sampler.levels();
   view.progress.done(work.encode);
   {

@@ -22,17 +22,20 @@ struct OutpaintOptions {
   /// with a chance of kRound / (drawn + kRound).
   bool until_settled = false;
   static constexpr int kRound = 8;
-  double temperature = 0.7;  ///< 0 (greedy) to 2
+  double temperature = 0.5;  ///< 0 (greedy) to 2; published: 0.7, and 0.5 indoors
   std::uint64_t seed = 0;
   std::uint32_t view = 0;
-  bool likelihood = false;  ///< count the PixelCNN's own mean log-likelihood as a signal
-  /// Refine and score only so many, the best by a cheaper score; 0 = all.
+  bool likelihood = false;  ///< count the PixelCNN's own mean log-likelihood beside the scorers
+  /// Refine and score only so many, the best by a cheaper score; 0 = all. Without scorers, one.
   int refine_best = 0;
   enum class Screen {
     likelihood,  ///< the PixelCNN's own mean log-likelihood: costs nothing
     unrefined,   ///< the same scorers, on the picture before the refiner
   };
   Screen screen = Screen::unrefined;
+  /// Encode the projection with the nearest colours where it is missing, so that the codes of cells
+  /// that are seen in part continue what is seen. false, as published: missing pixels are grey.
+  bool continue_colors = true;
   /// Decode and refine for each completion only what it can change; false: whole pictures.
   bool region = true;
   /// Told what share of the view is done, from 0 to 1 and never falling, in all stages: one call at
@@ -77,7 +80,8 @@ class Outpainter {
     const models::Autoencoder* autoencoder = nullptr;
     const models::PixelCnn* pixel_cnn = nullptr;
     const models::Refiner* refiner = nullptr;
-    std::vector<Scorer> scorers;  ///< may be empty: then log-likelihood alone selects
+    /// May be empty: then the likeliest completion is kept, and it alone is decoded and refined.
+    std::vector<Scorer> scorers;
   };
   explicit Outpainter(Networks networks);
 
@@ -94,8 +98,10 @@ class Outpainter {
   struct View;
   Outpainted outpaint(const nn::TensorView& projection, const cv::Mat1b& background,
                       const OutpaintOptions& options);
-  std::vector<std::int32_t> encode(View& view, const nn::TensorView& projection);
+  std::vector<std::int32_t> encode(View& view, const nn::TensorView& projection,
+                                   const cv::Mat1b& background);
   void draw(View& view, Sampler& sampler);
+  void draw_until_settled(View& view, Sampler& sampler);
   void sample(View& view, Sampler& sampler, int count);
   std::vector<int> screened(View& view);
   void refine_and_score(View& view, const std::vector<int>& numbers);

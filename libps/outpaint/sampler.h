@@ -12,7 +12,7 @@
 namespace ps::outpaint {
 
 struct SampleOptions {
-  double temperature = 0.7;  ///< 0 = the likeliest code (the first of them), at most 2
+  double temperature = 0.5;  ///< 0 = the likeliest code (the first of them), at most 2
   std::uint64_t seed = 0;
   std::uint32_t view = 0;  ///< views with one seed draw different numbers
   /// By cell, as many as the order has: taken in place of what would be drawn (teacher forcing);

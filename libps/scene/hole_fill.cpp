@@ -1,31 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "libps/scene/hole_fill.h"
 
-#include <opencv2/imgproc.hpp>
 #include <opencv2/photo.hpp>
-#include <vector>
 
 #include "libps/core/error.h"
+#include "libps/outpaint/nearest_seen.h"
 
 namespace ps {
 namespace {
 
 /// @param holes  255 where there is one, else 0; here and below
 Image nearest_colours(const Image& picture, const Mask& holes) {
-  cv::Mat1f distance;
-  cv::Mat1i labels;
-  cv::distanceTransform(holes, distance, labels, cv::DIST_L2, cv::DIST_MASK_5,
-                        cv::DIST_LABEL_PIXEL);
-  std::vector<cv::Vec3f> colors(picture.total() + 1);
-  for (int y = 0; y < picture.rows; ++y) {
-    for (int x = 0; x < picture.cols; ++x) {
-      if (!holes(y, x)) colors[static_cast<std::size_t>(labels(y, x))] = picture(y, x);
-    }
-  }
+  const cv::Mat1i nearest = outpaint::nearest_seen(holes);
   Image out(picture.size());
   for (int y = 0; y < picture.rows; ++y) {
     for (int x = 0; x < picture.cols; ++x) {
-      out(y, x) = colors[static_cast<std::size_t>(labels(y, x))];
+      const int from = nearest(y, x);
+      out(y, x) = picture(from / picture.cols, from % picture.cols);
     }
   }
   return out;

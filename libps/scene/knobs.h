@@ -20,7 +20,7 @@ struct OutpaintKnobOptions {
   int selection_samples = 16;     ///< completions that selections choose from
 };
 
-/// @brief How many completions are drawn of a view: 1 to 100. The target is outpainted from the
+/// @brief How many completions are drawn of a view, the likeliest being kept: 1 to 100. The target is outpainted from the
 /// input alone and rendered from the cloud, as scenes are. PSNR where the input does not see the
 /// target, and of all of it (and LPIPS).
 Knob samples_knob(const OutpaintKnobOptions& options);

@@ -69,6 +69,7 @@ Knob samples_knob(const OutpaintKnobOptions& options) {
   for (const int samples : {1, 4, 16, 50, 100}) {
     settings.push_back(options);
     settings.back().scene.outpaint.samples = samples;
+    settings.back().networks.outpaint.scorers.clear();
     knob.settings.push_back(
         {std::to_string(samples), samples == outpaint::OutpaintOptions().samples});
   }
@@ -90,7 +91,7 @@ Knob selection_knob(const OutpaintKnobOptions& options) {
         if (one.name == scorer) scorers.push_back(one);
       }
     }
-    knob.settings.push_back({name, scorer == "all"});
+    knob.settings.push_back({name, std::string(name) == "likelihood"});
   };
   add("first", "none", 1);
   add("likelihood", "none", options.selection_samples);

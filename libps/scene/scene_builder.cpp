@@ -68,7 +68,8 @@ bool SceneBuilder::Impl::fill(SupportView& support, const Splat& seen) {
   const outpaint::Outpainted filled =
       outpainter.run(to_network(seen.color), seen.missing, options.outpaint);
   if (filled.image.shape().pixels() == 0) return false;
-  support.view.color = from_network(filled.image);
+  support.view.color =
+      continue_colors(seen.color, from_network(filled.image), seen.missing, options.colors);
   support.report.outpaint = filled.report;
   support.report.best = filled.best;
   support.report.outpaint_seconds = seconds_since(start);

@@ -8,6 +8,7 @@
 #include "libps/geometry/depth_alignment.h"
 #include "libps/geometry/free_space.h"
 #include "libps/geometry/scene_cloud.h"
+#include "libps/geometry/seam_colors.h"
 #include "libps/geometry/splat.h"
 #include "libps/outpaint/outpainter.h"
 #include "libps/scene/photo_depth.h"
@@ -25,6 +26,7 @@ struct SceneOptions {
   SceneCloudOptions cloud;
   SplatOptions splat;  ///< into the networks' view; its background is set to grey
   DepthAlignmentOptions alignment;
+  SeamColorOptions colors;
   FreeSpaceOptions free_space;
   outpaint::OutpaintOptions outpaint;  ///< `view` is set to the view's number
 };
@@ -47,7 +49,7 @@ struct SupportReport {
 
 /// @brief An outpainted view: all that adding it to the cloud takes.
 struct SupportView {
-  View view;    ///< colour (refined), depth (aligned), the networks' lens, pose
+  View view;    ///< colour (refined, continued), depth (aligned), the networks' lens, pose
   Mask pixels;  ///< that are to become points
   SupportReport report;
 };

@@ -161,13 +161,10 @@ void check_networks(const std::string& name, const SceneNetworks& networks) {
 ViewMethod::~ViewMethod() = default;
 
 const std::vector<std::string>& view_method_names() {
-  static const std::vector<std::string> names = {"ours",          "one-completion",
-                                                 "by-classifier", "by-discriminator",
-                                                 "by-likelihood", "sequential",
-                                                 "independent",   "no-outpainter",
-                                                 "rgb",           "mean-colour",
-                                                 "telea",         "navier-stokes",
-                                                 "nearest",       "copy"};
+  static const std::vector<std::string> names = {
+      "ours",        "one-completion", "by-likelihood", "by-classifier", "by-discriminator",
+      "by-both",     "sequential",     "independent",   "no-outpainter", "rgb",
+      "mean-colour", "telea",          "navier-stokes", "nearest",       "copy"};
   return names;
 }
 
@@ -196,6 +193,10 @@ std::unique_ptr<ViewMethod> make_view_method(const std::string& name,
     outpaint.refine_best = 0;
   } else if (name == "by-likelihood") {
     networks.outpaint.scorers.clear();  // then likelihood alone selects
+  } else if (name == "by-both") {
+    networks.outpaint.scorers = {scorer_named(all_networks, "classifier"),
+                                 scorer_named(all_networks, "discriminator")};
+    outpaint.likelihood = false;
   } else if (name.rfind("by-", 0) == 0) {
     networks.outpaint.scorers = {scorer_named(all_networks, name.substr(3))};
     outpaint.likelihood = false;

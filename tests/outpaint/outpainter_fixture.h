@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "libps/core/random.h"
+#include "libps/outpaint/nearest_seen.h"
 #include "libps/outpaint/outpainter.h"
 #include "tests/support/random_weights.h"
 
@@ -45,6 +46,23 @@ class OutpainterOfRandomWeights : public testing::Test {
               seen_.push_back(std::move(copy));
               return scores.empty() ? 0 : scores[(seen_.size() - 1) % scores.size()];
             }};
+  }
+
+  /// What the sampler is given: codes of the projection with the nearest colours where it is
+  /// missing.
+  std::vector<std::int32_t> known_codes() {
+    const cv::Mat1i nearest = nearest_seen(background_);
+    nn::Tensor whole(projection_.shape());
+    for (std::size_t i = 0; i < nearest.total(); ++i) {
+      std::copy_n(projection_.view().pixel(static_cast<std::size_t>(nearest.ptr<int>()[i])), 3,
+                  whole.view().pixel(i));
+    }
+    return codes_of(whole);
+  }
+  std::vector<std::int32_t> codes_of(const nn::Tensor& image) {
+    std::vector<std::int32_t> codes(kHeight / 8 * kWidth / 8);
+    autoencoder_.encode(image, codes.data(), workspace_);
+    return codes;
   }
 
   /// The whole view, network after network.

@@ -13,10 +13,8 @@ TEST_F(OutpainterOfRandomWeights, a_part_of_the_view_gives_what_the_whole_view_g
   OutpaintOptions options;
   options.samples = 4;
   options.seed = 5;
-  std::vector<std::int32_t> codes(kHeight / 8 * kWidth / 8);
-  autoencoder_.encode(projection_, codes.data(), workspace_);
-  const auto completions = Sampler(pixel_cnn_, order_of(background_), codes)
-                               .sample(0, 4, {0.7, 5, 0, nullptr, nullptr, nullptr});
+  const auto completions = Sampler(pixel_cnn_, order_of(background_), known_codes())
+                               .sample(0, 4, {0.5, 5, 0, nullptr, nullptr, nullptr});
   const Outpainted result =
       outpainter({recorder({1, 0, 3, 2})}).run(projection_, background_, options);
   ASSERT_EQ(seen_.size(), 4u);
@@ -31,6 +29,23 @@ TEST_F(OutpainterOfRandomWeights, a_part_of_the_view_gives_what_the_whole_view_g
   EXPECT_LE(worst_difference(result.image, refined_whole(result.codes, options)), 1e-6);
   EXPECT_EQ(result.report.drawn, 4);
   EXPECT_EQ(result.report.refined, 4);
+}
+
+TEST_F(OutpainterOfRandomWeights, cells_seen_in_part_continue_what_is_seen_unless_told_otherwise) {
+  OutpaintOptions options;
+  options.samples = 1;
+  const Order order = order_of(background_);
+  const auto known = [&](std::vector<std::int32_t> codes) {
+    for (std::size_t i = 0; i < codes.size(); ++i) codes[i] *= order.missing[i] == 0;
+    return codes;
+  };
+  const auto used = [&] {
+    return known(outpainter({}).run(projection_, background_, options).codes);
+  };
+  EXPECT_EQ(used(), known(known_codes()));
+  options.continue_colors = false;
+  EXPECT_EQ(used(), known(codes_of(projection_)));
+  EXPECT_NE(known(known_codes()), known(codes_of(projection_)));
 }
 
 TEST_F(OutpainterOfRandomWeights, nothing_missing_costs_nothing) {
@@ -100,11 +115,35 @@ TEST_F(OutpainterOfRandomWeights, one_signal_alone_chooses_its_own_best) {
   EXPECT_EQ(realest.best, place(realest.scores.at(0), std::greater<>()));
   const Outpainted surest = result_of({entropy_scorer(classifier_)});
   EXPECT_EQ(surest.best, place(surest.scores.at(0), std::less<>()));
-  const Outpainted likeliest = result_of({});
-  EXPECT_EQ(likeliest.best, place(likeliest.scores.at(0), std::greater<>()));
   EXPECT_NE(realest.scores, surest.scores);
   options.samples = 1;
   EXPECT_EQ(result_of({discriminator_scorer(discriminator_)}).best, 0);
+}
+
+TEST_F(OutpainterOfRandomWeights, without_scorers_the_likeliest_alone_is_refined) {
+  const auto completions = Sampler(pixel_cnn_, order_of(background_), known_codes()).sample(0, 40);
+  const auto likeliest_of = [&](int count) {
+    const auto less = [](const Completion& a, const Completion& b) {
+      return a.log_likelihood < b.log_likelihood;
+    };
+    return static_cast<int>(
+        std::max_element(completions.begin(), completions.begin() + count, less) -
+        completions.begin());
+  };
+  OutpaintOptions options;
+  for (const bool until_settled : {false, true}) {
+    for (const int samples : {1, 9, 40}) {
+      options.samples = samples;
+      options.until_settled = until_settled;
+      const Outpainted result = outpainter({}).run(projection_, background_, options);
+      const int best = likeliest_of(result.report.drawn);
+      EXPECT_EQ(result.best, best) << samples;
+      EXPECT_EQ(result.refined, std::vector<int>{best}) << samples;
+      EXPECT_EQ(result.codes, completions[static_cast<std::size_t>(best)].codes) << samples;
+      EXPECT_EQ(worst_difference(result.image, refined_whole(result.codes, options)), 0);
+      EXPECT_TRUE(until_settled || result.report.drawn == samples);
+    }
+  }
 }
 
 TEST_F(OutpainterOfRandomWeights, draws_in_rounds_until_the_best_has_settled) {
@@ -134,9 +173,7 @@ TEST_F(OutpainterOfRandomWeights, only_the_likeliest_few_are_refined_when_asked)
   EXPECT_EQ(seen_.size(), 3u);
   EXPECT_EQ(result.report.drawn, 10);
   EXPECT_EQ(result.report.refined, 3);
-  std::vector<std::int32_t> codes(kHeight / 8 * kWidth / 8);
-  autoencoder_.encode(projection_, codes.data(), workspace_);
-  const auto completions = Sampler(pixel_cnn_, order_of(background_), codes).sample(0, 10);
+  const auto completions = Sampler(pixel_cnn_, order_of(background_), known_codes()).sample(0, 10);
   double least = 0;
   for (const int i : result.refined) {
     least = std::min(least, completions[static_cast<std::size_t>(i)].log_likelihood);
@@ -251,7 +288,7 @@ TEST_F(OutpainterOfRandomWeights, values_that_are_not_finite_are_errors_that_nam
   EXPECT_TRUE(has(score, "score of completion 2 by recorder is not a number")) << score;
   const models::Refiner overflowing(
       with_all(models::random_refiner(8), "projector.eblocks.0.ch_a.2.weight", 1e38f));
-  Outpainter other({&autoencoder_, &pixel_cnn_, &overflowing, {}});
+  Outpainter other({&autoencoder_, &pixel_cnn_, &overflowing, {recorder()}});
   const std::string picture = error_of([&] { other.run(projection_, background_, options); });
   EXPECT_TRUE(has(picture, "picture of completion 0")) << picture;
 }

@@ -178,6 +178,7 @@ TEST(ViewMethods, missing_networks_are_told_and_others_do_without) {
   networks.scorers.clear();
   EXPECT_NE(message_of("rgb", networks).find("rgb.safetensors"), std::string::npos);
   EXPECT_NE(message_of("by-classifier", networks).find("no classifier"), std::string::npos);
+  EXPECT_NE(message_of("by-both", networks).find("no classifier"), std::string::npos);
   EXPECT_EQ(message_of("by-likelihood", networks), "");
 }
 
