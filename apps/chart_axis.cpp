@@ -3,16 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "libps/core/words.h"
 
 namespace ps::apps {
 namespace {
 
-std::string words_of(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", std::abs(value) < 1e-12 ? 0 : value);
-  return text;
-}
+std::string words_of(double value) { return in_digits(std::abs(value) < 1e-12 ? 0 : value); }
 
 }  // namespace
 

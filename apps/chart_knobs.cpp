@@ -51,6 +51,17 @@ std::vector<WidthFile> width_files(const std::string& folder) {
   return files;
 }
 
+/// Knobs that show whole pictures are scored by LPIPS; the others show parts, or no picture.
+void say_what_lpips_leaves_out(const std::vector<Knob>& knobs, const Context& context) {
+  std::string others;
+  for (const Knob& knob : knobs) {
+    const bool scored = std::any_of(knob.scores.begin(), knob.scores.end(),
+                                    [](const ScoreColumn& c) { return c.name == "LPIPS"; });
+    if (!scored) others += (others.empty() ? "" : ", ") + knob.name;
+  }
+  if (!others.empty()) context.say("--lpips scores samples and selection alone, not " + others);
+}
+
 }  // namespace
 
 const std::vector<std::string>& knob_names() {
@@ -60,7 +71,8 @@ const std::vector<std::string>& knob_names() {
   return names;
 }
 
-ChartKnobs::ChartKnobs(const ChartKnobOptions& options, const Context& context) {
+ChartKnobs::ChartKnobs(const ChartKnobOptions& options, const Context& context)
+    : perceptual_(options.lpips) {
   for (const std::string& name : options.names) {
     if (name == "samples") knobs_.push_back(samples_knob(outpainting(options, context)));
     if (name == "selection") knobs_.push_back(selection_knob(outpainting(options, context)));
@@ -75,22 +87,17 @@ ChartKnobs::ChartKnobs(const ChartKnobOptions& options, const Context& context) 
     if (name == "width") add_widths(options, context);
   }
   if (knobs_.empty()) throw Error("--knobs", "nothing is left to try", "--widths DIR for width");
+  if (!options.lpips.empty()) say_what_lpips_leaves_out(knobs_, context);
 }
 
 OutpaintKnobOptions ChartKnobs::outpainting(const ChartKnobOptions& options,
                                             const Context& context) {
-  if (models_ == nullptr) {
-    models_ = std::make_unique<SceneModels>(options.weights, "both", context);
-    if (!options.lpips.empty()) lpips_.emplace(read_weights(options.lpips));
-  }
+  if (models_ == nullptr) models_ = std::make_unique<SceneModels>(options.weights, "both", context);
   OutpaintKnobOptions knob;
   knob.networks = models_->networks();
   knob.scene.outpaint.seed = context.seed;
-  knob.scene.outpaint.progress = [](double) {
-    throw_if_interrupted();
-    return true;
-  };
-  if (lpips_) knob.perceptual = lpips_distance(*lpips_);
+  knob.scene.outpaint.progress = unless_interrupted;
+  knob.perceptual = perceptual_.distance();
   return knob;
 }
 

@@ -2,12 +2,11 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/eval_models.h"
 #include "apps/scene_models.h"
-#include "libps/models/lpips.h"
 #include "libps/scene/knobs.h"
 
 namespace ps::apps {
@@ -25,7 +24,8 @@ struct ChartKnobOptions {
 /// @brief The knobs of a chart, with the networks that they need.
 class ChartKnobs {
  public:
-  /// Says which knob is left out and why. Throws ps::Error when weights are missing or unsound.
+  /// Says which knob is left out and why, and which ones LPIPS does not score. Throws ps::Error
+  /// when weights are missing or unsound.
   ChartKnobs(const ChartKnobOptions& options, const Context& context);
 
   const std::vector<Knob>& knobs() const { return knobs_; }
@@ -37,7 +37,7 @@ class ChartKnobs {
   void add_widths(const ChartKnobOptions& options, const Context& context);
 
   std::unique_ptr<SceneModels> models_;
-  std::optional<models::Lpips> lpips_;
+  PerceptualModel perceptual_;
   nn::Weights refiner_;
   std::vector<std::unique_ptr<DepthModel>> depths_;
   std::vector<Knob> knobs_;

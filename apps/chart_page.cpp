@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/chart_page.h"
 
-#include <cmath>
-#include <cstdio>
 #include <opencv2/imgproc.hpp>
 
 #include "apps/page_head.h"
@@ -27,18 +25,10 @@ constexpr char kStyle[] =
   figcaption { font-size: .85rem; }
 )css";
 
-std::string rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return std::isnan(value) ? "-" : text;
-}
-
 std::string cell_of(const Interval& interval) {
-  std::string cell = "<td>" + rounded(interval.value);
-  if (interval.low < interval.high) {
-    cell += "<br><small>" + rounded(interval.low) + " to " + rounded(interval.high) + "</small>";
-  }
-  return cell + "</td>";
+  const std::string between = interval_text(interval, " to ", 4);
+  return "<td>" + figure_text(interval.value, 4) +
+         (between.empty() ? "" : "<br><small>" + between + "</small>") + "</td>";
 }
 
 std::string table_of(const ScoreSummary& summary) {
@@ -82,8 +72,8 @@ std::string pictures_of(const KnobChart& chart) {
       if (chart.points[s].is_default) attributes += " class=\"default\"";
       const ScoreRow& row = chart.result.table.rows()[i * chart.points.size() + s];
       html += figure_of(pictures.by_setting[s],
-                        chart.points[s].setting + ": " + rounded(row.values[0]) + " s, " +
-                            rounded(row.values[1]) + " " + chart.knob.scores.front().unit,
+                        chart.points[s].setting + ": " + figure_text(row.values[0], 4) + " s, " +
+                            figure_text(row.values[1], 4) + " " + chart.knob.scores.front().unit,
                         attributes);
     }
     html += "</div>\n";
@@ -99,8 +89,10 @@ std::string html_of(const std::vector<KnobChart>& charts, const BootstrapOptions
   html += "<h1>Accuracy against time</h1>\n<p>" + escaped(about) + "</p>\n";
   html +=
       "<p>Click on a dot to see its pictures. * is the default (in a ring, framed), + is on the "
-      "Pareto front: no other setting is as fast and as accurate. Bars are 95 % bootstrap "
-      "intervals of means, without what makes a sample easy or hard for all settings alike.</p>\n";
+      "Pareto front: no other setting is as fast and as accurate. Bars, and small figures below "
+      "others in the tables, are 95 % bootstrap intervals of means; those of seconds and accuracy "
+      "are without what makes a sample easy or hard for all settings alike. One sample has "
+      "none.</p>\n";
   for (const KnobChart& chart : charts) {
     html += "<h2>" + escaped(chart.knob.name) + "</h2>\n<p>" + escaped(chart.knob.what) +
             "</p>\n<div class=\"measured\">\n" + svg_of(drawing_of(picture_of(chart))) +

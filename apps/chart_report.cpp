@@ -57,7 +57,9 @@ std::string anchor_of(const KnobChart& chart, std::size_t setting) {
 
 ChartPicture picture_of(const KnobChart& chart) {
   Curve dots, front;
-  dots.name = "settings, with 95 % intervals";
+  const bool intervals = std::any_of(chart.points.begin(), chart.points.end(),
+                                     [](const auto& p) { return !std::isnan(p.accuracy.low); });
+  dots.name = intervals ? "settings, with 95 % intervals" : "settings";
   dots.line = false;
   front.name = "Pareto front";
   front.dots = false;

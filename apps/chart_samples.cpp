@@ -11,12 +11,10 @@ namespace ps::apps {
 namespace {
 
 /// Loads a frame that must have depth.
-View load_frame(const PosedFrames& frames, std::size_t i) {
+View load_frame(const ChosenFrames& frames, std::size_t i) {
   View view = frames.load(i);
-  if (!has_depth(view)) {
-    throw Error(frames.frames[i].name, "has no depth", "frames with true depth");
-  }
-  check(view, frames.frames[i].name);
+  if (!has_depth(view)) throw Error(frames.name(i), "has no depth", "frames with true depth");
+  check(view, frames.name(i));
   return view;
 }
 
@@ -43,29 +41,23 @@ ChartSamples frame_samples(const FramesArguments& arguments, std::size_t count,
                            const Context& context) {
   constexpr std::size_t kApart = 3;
   const auto frames = std::make_shared<ChosenFrames>(choose_posed_frames(arguments, context));
-  std::vector<Pose> poses;
-  std::vector<int> worlds;
-  for (const std::size_t i : frames->chosen) {
-    poses.push_back(frames->all.frames[i].world_from_cam);
-    worlds.push_back(frames->all.frames[i].world);
-  }
+  const auto pose = [&](std::size_t i) { return frames->pose(i); };
   const auto sets = std::make_shared<std::vector<FrameSet>>(
-      choose_frame_sets(poses, worlds, count, kApart, context.seed));
+      choose_frame_sets(frames->worlds(), pose, count, kApart, context.seed));
   if (sets->empty()) {
     throw Error(arguments.data, "no two frames are a pair",
                 "two of one world that look 20 to 60 degrees apart, within a metre");
   }
   const auto load = [=](std::size_t s) {
     const FrameSet& set = (*sets)[s];
-    const auto view = [&](std::size_t i) { return load_frame(frames->all, frames->chosen[i]); };
-    const auto name = [&](std::size_t i) { return frames->all.frames[frames->chosen[i]].name; };
-    KnobSample sample = {name(set.pair.source) + " to " + name(set.pair.target),
+    const auto view = [&](std::size_t i) { return load_frame(*frames, i); };
+    KnobSample sample = {frames->name(set.pair.source) + " to " + frames->name(set.pair.target),
                          frames->groups[set.pair.source],
                          view(set.pair.source),
                          view(set.pair.target),
                          {},
                          {}};
-    check_lens(sample.target, sample.input, name(set.pair.target));
+    check_lens(sample.target, sample.input, frames->name(set.pair.target));
     for (const std::size_t i : set.others) sample.others.push_back(view(i));
     return sample;
   };

@@ -5,15 +5,12 @@
 #include <cstdio>
 
 #include "apps/part.h"
+#include "libps/core/words.h"
 
 namespace ps::apps {
 namespace {
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", std::round(value * 100) / 100);
-  return text;
-}
+std::string number(double value) { return in_digits(std::round(value * 100) / 100); }
 
 std::string color_of(unsigned color) {
   char text[16];

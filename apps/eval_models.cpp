@@ -7,8 +7,8 @@
 
 namespace ps::apps {
 
-void add_lpips_option(CLI::App& verb, std::string& lpips) {
-  verb.add_option("--lpips", lpips, "Weights of LPIPS, for the perceptual distance")
+void add_lpips_option(CLI::App& verb, std::string& lpips, const std::string& of) {
+  verb.add_option("--lpips", lpips, "Weights of LPIPS, for the perceptual distance" + of)
       ->type_name("FILE");
 }
 

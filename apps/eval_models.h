@@ -12,8 +12,9 @@
 
 namespace ps::apps {
 
-/// Adds --lpips.
-void add_lpips_option(CLI::App& verb, std::string& lpips);
+/// @brief Adds --lpips.
+/// @param of  what is scored with it, where that is not all: ", in the knobs samples and selection"
+void add_lpips_option(CLI::App& verb, std::string& lpips, const std::string& of = "");
 
 /// @brief What looks at pictures as people do, where its weights are given.
 class PerceptualModel {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/frame_sink.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -12,7 +13,6 @@
 #include "io/intrinsics_file.h"
 #include "io/photo.h"
 #include "io/trajectory.h"
-#include "libps/core/error.h"
 
 namespace fs = std::filesystem;
 
@@ -95,8 +95,9 @@ std::unique_ptr<FrameSink> make_frame_sink(const fs::path& path, cv::Size size,
     return std::unique_ptr<FrameSink>(video_sink(path, size, options.frames_per_second));
   }
   if (std::find(kOthers.begin(), kOthers.end(), extension) != kOthers.end()) {
-    throw Error(path.string(), "is no kind of file that can be written here",
-                "a name ending in .mp4 or .png, or a folder");
+    throw CLI::ValidationError(path.string(),
+                               "is no kind of file that can be written here; expected a name "
+                               "ending in .mp4 or .png, or a folder");
   }
   return std::make_unique<FolderSink>(path, options);
 }

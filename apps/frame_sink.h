@@ -28,7 +28,8 @@ class FrameSink {
 };
 
 /// @brief A sink by the path's name: `.mp4` a video, `.png` one picture, anything else a folder of
-/// frame_00000.png (and depth_00000.png), trajectory.txt and intrinsics.json. Throws ps::Error.
+/// frame_00000.png (and depth_00000.png), trajectory.txt and intrinsics.json. Throws ps::Error, and
+/// CLI::ValidationError for another kind of file.
 std::unique_ptr<FrameSink> make_frame_sink(const std::filesystem::path& path, cv::Size size,
                                            const SinkOptions& options);
 

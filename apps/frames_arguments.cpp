@@ -6,15 +6,14 @@
 
 #include "apps/program.h"
 #include "libps/core/error.h"
+#include "libps/core/words.h"
 
 namespace ps::apps {
 namespace {
 
 constexpr std::size_t kParts = 20;  ///< of a walk
 
-std::vector<int> groups_of(const PosedFrames& all, const std::vector<std::size_t>& chosen) {
-  std::vector<int> groups;
-  for (const std::size_t i : chosen) groups.push_back(all.frames[i].world);
+std::vector<int> groups_of(std::vector<int> groups) {
   const bool one_world =
       std::all_of(groups.begin(), groups.end(), [&](int group) { return group == groups.front(); });
   const std::size_t parts = std::min(kParts, groups.size());
@@ -46,6 +45,12 @@ void FramesArguments::add_to(CLI::App& verb, const std::string& standard) {
       ->check(in_range(1e-6, kNoBound));
 }
 
+std::vector<int> ChosenFrames::worlds() const {
+  std::vector<int> worlds;
+  for (const std::size_t i : chosen) worlds.push_back(all.frames[i].world);
+  return worlds;
+}
+
 ChosenFrames choose_posed_frames(const FramesArguments& a, const Context& context) {
   FrameChoice choice = a.choice;
   if (!a.frames.empty()) parse_frames(a.frames, choice);
@@ -62,12 +67,12 @@ ChosenFrames choose_posed_frames(const FramesArguments& a, const Context& contex
     throw Error("--frames", "no frame is in " + a.frames,
                 "a range within that of the frames' timestamps");
   }
-  result.groups = groups_of(result.all, result.chosen);
+  result.groups = groups_of(result.worlds());
   context.detail(a.data + ": " + result.all.layout + ", " + std::to_string(result.chosen.size()) +
-                 " of " + std::to_string(result.all.frames.size()) + " frames");
+                 " of " + counted(result.all.frames.size(), "frame"));
   if (result.all.skipped > 0) {
-    context.warn(a.data + ": " + std::to_string(result.all.skipped) +
-                 " frames lack a photo, a depth or a pose and are left out");
+    context.warn(a.data + ": " + counted(result.all.skipped, "frame lacks", "frames lack") +
+                 " a photo, a depth or a pose; left out");
   }
   for (const std::string& line : result.all.assumed) context.warn(a.data + ": " + line);
   return result;

@@ -31,6 +31,13 @@ struct ChosenFrames {
   /// Of each chosen frame, for bootstrap_mean(): its world, or of one world a twentieth of the
   /// walk, as neighbours on it see the same things.
   std::vector<int> groups;
+
+  std::vector<int> worlds() const;  ///< of each chosen frame
+  const std::string& name(std::size_t chosen_frame) const {
+    return all.frames[chosen[chosen_frame]].name;
+  }
+  Pose pose(std::size_t chosen_frame) const { return all.pose(chosen[chosen_frame]); }
+  View load(std::size_t chosen_frame) const { return all.load(chosen[chosen_frame]); }
 };
 
 /// @brief Opens DATA and chooses; warns of what is left out or assumed. Throws ps::Error, also when

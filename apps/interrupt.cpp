@@ -30,6 +30,11 @@ void throw_if_interrupted() {
   if (noted != 0) throw Interrupted();
 }
 
+bool unless_interrupted(double /*share*/) {
+  throw_if_interrupted();
+  return true;
+}
+
 void die_of_interrupt() {
   const int signal = noted != 0 ? noted : SIGINT;
   std::signal(signal, SIG_DFL);

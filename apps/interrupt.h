@@ -22,6 +22,11 @@ void note_interrupts();
 
 void throw_if_interrupted();
 
+/// @brief For work that tells how far it is, but is stopped by the user alone: calls
+/// throw_if_interrupted().
+/// @return true: go on
+bool unless_interrupted(double share);
+
 /// @brief Ends the program the way the noted signal would have, so that shells can tell.
 [[noreturn]] void die_of_interrupt();
 

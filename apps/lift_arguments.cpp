@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/lift_arguments.h"
 
-#include <sstream>
-
 #include "apps/program.h"
 
 namespace ps::apps {
@@ -23,11 +21,7 @@ void add_lift_options(CLI::App& verb, LiftOptions& options) {
 }
 
 void check_depth_range(const LiftOptions& options) {
-  if (options.min_depth <= options.max_depth) return;
-  std::ostringstream text;
-  text << options.min_depth << " is more than --max-depth " << options.max_depth
-       << "; expected at most that";
-  throw CLI::ValidationError("--min-depth", text.str());
+  check_order("--min-depth", options.min_depth, "--max-depth", options.max_depth);
 }
 
 }  // namespace ps::apps

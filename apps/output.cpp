@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <set>
@@ -98,7 +99,9 @@ OutputFolder::OutputFolder(const fs::path& target) : given_(target) {
                 "another output folder");
   }
   if (!given_.has_filename()) given_ = given_.parent_path();  // OUT/ is OUT
-  if (given_.empty()) throw Error("output", "the folder's name is empty");
+  if (given_.empty()) {
+    throw CLI::ValidationError("output", "the folder's name is empty; expected a folder");
+  }
   const auto given = [this](const fs::path&) { return given_.string(); };
   on_files(
       [this] {
@@ -139,11 +142,35 @@ void OutputFolder::write(const std::string& name,
   }
 }
 
+void OutputFolder::clears(const std::vector<std::string>& names) {
+  stale_.insert(stale_.end(), names.begin(), names.end());
+}
+
+void OutputFolder::clear_stale() const {
+  for (const std::string& name : stale_) {
+    const fs::path place = given_ / name, folder = place.parent_path();
+    const bool series = name.find('#') != std::string::npos;
+    std::vector<fs::path> found;
+    if (!series) found = {place};
+    if (series && fs::is_directory(folder)) {
+      for (const auto& entry : fs::directory_iterator(folder)) {
+        if (series_of(entry.path()) == place.filename()) found.push_back(entry.path());
+      }
+    }
+    for (const fs::path& file : found) {
+      const bool written = fs::exists(partial_->path() / file.lexically_relative(given_));
+      if (!written && fs::is_regular_file(file)) fs::remove(file);
+    }
+    if (folder != given_ && fs::is_directory(folder) && fs::is_empty(folder)) fs::remove(folder);
+  }
+}
+
 void OutputFolder::commit() {
   on_files(
       [this] {
         if (fs::is_directory(target_)) {
           check_merge(partial_->path(), given_);
+          clear_stale();
           merge(partial_->path(), given_);
           fs::remove_all(partial_->path());
         } else {
@@ -160,8 +187,9 @@ void check_output_file(const fs::path& path, const std::vector<std::string>& ext
   }
   const auto match = std::find(extensions.begin(), extensions.end(), extension_of(path));
   if (!extensions.empty() && match == extensions.end()) {
-    throw Error(path.string(), "is no kind of file that can be written here",
-                "a name ending in " + choices);
+    throw CLI::ValidationError(
+        path.empty() ? "output" : path.string(),
+        "is no kind of file that can be written here; expected a name ending in " + choices);
   }
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) throw Error(path.string(), "is a folder", "a file");

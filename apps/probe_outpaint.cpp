@@ -71,10 +71,7 @@ void run_sample(const SampleArguments& a, const Context& context) {
   outpaint::SampleOptions options;
   options.temperature = a.greedy ? 0 : a.temperature;
   options.seed = context.seed;
-  options.progress = [](double) {
-    throw_if_interrupted();
-    return true;
-  };
+  options.progress = unless_interrupted;
   const Stopwatch watch;
   const outpaint::Completion completion = sampler.sample(a.completion, 1, options).at(0);
   const double seconds = watch.seconds();

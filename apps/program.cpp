@@ -10,12 +10,12 @@
 #include <new>
 #include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
-#include <sstream>
 #include <string>
 
 #include "apps/interrupt.h"
 #include "io/hush.h"
 #include "libps/core/parallel.h"
+#include "libps/core/words.h"
 
 namespace ps::apps {
 namespace {
@@ -23,7 +23,8 @@ namespace {
 void add_common_options(CLI::App& program, Context& context) {
   program.option_defaults()->always_capture_default();
   program.add_flag("-v,--verbose", context.verbose, "Say more on stderr");
-  program.add_flag("-q,--quiet", context.quiet, "Say nothing but errors");
+  program.add_flag("-q,--quiet", context.quiet,
+                   "Say nothing but errors on stderr; results on stdout stay");
   program.add_option("--seed", context.seed, "Seed of everything that is drawn at random")
       ->type_name("N")
       ->check(whole_in(0, UINT64_MAX));
@@ -43,8 +44,11 @@ void hush_libraries() {
 }
 
 int report_usage(const CLI::App& program, const CLI::ParseError& error) {
-  std::string verb;
-  for (const CLI::App* parsed : program.get_subcommands()) verb += " " + parsed->get_name();
+  std::string verb;  // with the one inside it, as "eval views"
+  for (const CLI::App* at = &program; !at->get_subcommands().empty();) {
+    at = at->get_subcommands().front();
+    verb += " " + at->get_name();
+  }
   std::fprintf(stderr, "pixelsynth%s: %s; see pixelsynth%s --help\n", verb.c_str(),
                one_line(error.what()).c_str(), verb.c_str());
   return 2;
@@ -91,12 +95,7 @@ int run(int argc, char** argv) {
 }
 
 CLI::Validator in_range(double low, double high) {
-  const auto words = [](double value) {
-    std::ostringstream text;
-    text << value;
-    return text.str();
-  };
-  const std::string range = high < kNoBound ? words(low) + " to " + words(high)
+  const std::string range = high < kNoBound ? in_digits(low) + " to " + in_digits(high)
                             : low > 0       ? "more than 0"
                                             : "0 or more";
   const auto check = [=](const std::string& text) -> std::string {
@@ -119,6 +118,21 @@ CLI::Validator whole_in(std::uint64_t low, std::uint64_t high) {
     return "'" + text + "' is not right; expected a whole number from " + range;
   };
   return CLI::Validator(check, high < UINT64_MAX ? range : "");
+}
+
+CLI::Validator not_empty(const std::string& expected) {
+  return CLI::Validator(
+      [=](const std::string& text) {
+        return text.empty() ? "the name is empty; expected " + expected : "";
+      },
+      "");
+}
+
+void check_order(const std::string& least_option, double least, const std::string& most_option,
+                 double most) {
+  if (least <= most) return;
+  throw CLI::ValidationError(least_option, in_digits(least) + " is more than " + most_option + " " +
+                                               in_digits(most) + "; expected at most that");
 }
 
 CLI::Option* add_names(CLI::App& verb, const std::string& option, std::vector<std::string>& names,

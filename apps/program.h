@@ -24,6 +24,16 @@ CLI::Validator in_range(double low, double high);
 /// @brief Checks that an option is a whole number in [low, high]; CLI11 takes -1 for 2^64 - 1.
 CLI::Validator whole_in(std::uint64_t low, std::uint64_t high);
 
+/// @brief Checks that a file's or folder's name is not empty.
+/// @param expected  what would be right: "a folder"
+CLI::Validator not_empty(const std::string& expected);
+
+/// @brief Checks two options that bound a range: throws CLI::ValidationError when the least is more
+/// than the most.
+/// @param least_option, most_option  "--min-depth", "--max-depth"
+void check_order(const std::string& least_option, double least, const std::string& most_option,
+                 double most);
+
 /// @brief Adds an option that takes names with commas in between, each of `choices` and once at the
 /// most.
 CLI::Option* add_names(CLI::App& verb, const std::string& option, std::vector<std::string>& names,

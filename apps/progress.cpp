@@ -14,7 +14,7 @@
 namespace ps::apps {
 namespace {
 
-constexpr auto kBetweenDraws = std::chrono::milliseconds(100);
+constexpr double kBetweenDraws = 0.1;  ///< seconds
 
 int terminal_columns() {
   winsize size = {};
@@ -71,12 +71,11 @@ void Progress::update(std::size_t done) {
     if (drawn_) std::fputs("\r\033[K", stderr);
     context_.flush();
   }
-  const Clock::time_point now = Clock::now();
-  if (!visible_ || (drawn_ && done < total_ && now - last_ < kBetweenDraws)) return;
-  last_ = now;
+  if (!visible_ || (drawn_ && done < total_ && seconds_since(last_) < kBetweenDraws)) return;
+  last_ = now();
   drawn_ = true;
-  const double seconds = std::chrono::duration<double>(now - start_).count();
-  const std::string line = progress_line(what_, done, total_, seconds, terminal_columns());
+  const std::string line =
+      progress_line(what_, done, total_, seconds_since(start_), terminal_columns());
   std::fprintf(stderr, "\r%s\033[K", line.c_str());
   std::fflush(stderr);
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <string>
 
 #include "apps/context.h"
+#include "libps/core/clock.h"
 
 namespace ps::apps {
 
@@ -28,15 +28,13 @@ class Progress {
   void update(std::size_t done);
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   const Context& context_;
   std::string what_;
   std::size_t total_;
   bool visible_;
   bool drawn_ = false;
-  Clock::time_point start_ = Clock::now();
-  Clock::time_point last_;
+  Instant start_ = now();
+  Instant last_;
 };
 
 }  // namespace ps::apps

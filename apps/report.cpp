@@ -115,11 +115,7 @@ void print_text(const std::string& text) {
   }
 }
 
-double Stopwatch::seconds() const {
-  using Seconds = std::chrono::duration<double>;
-  const double s = Seconds(std::chrono::steady_clock::now() - start_).count();
-  return std::round(s * 1000) / 1000;
-}
+double Stopwatch::seconds() const { return std::round(seconds_since(start_) * 1000) / 1000; }
 
 void add_costs(Json& report, const Stopwatch& total) {
   report["seconds"]["total"] = total.seconds();

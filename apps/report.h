@@ -2,12 +2,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "apps/context.h"
+#include "libps/core/clock.h"
 #include "libps/geometry/camera.h"
 #include "libps/geometry/point.h"
 
@@ -44,7 +44,7 @@ class Stopwatch {
   double seconds() const;
 
  private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  Instant start_ = now();
 };
 
 /// @brief Adds to a report what the run took: seconds.total and peak_memory_mib.

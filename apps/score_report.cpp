@@ -3,27 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "apps/output.h"
+#include "apps/program.h"
 #include "io/atomic_file.h"
 #include "libps/core/error.h"
+#include "libps/core/words.h"
 
 namespace ps::apps {
 namespace {
 
 constexpr std::size_t kLineWidth = 100;
-
-std::string formatted(const char* format, double value) {
-  if (std::isnan(value)) return "-";
-  char text[40];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-std::string padded(const std::string& text, std::size_t width) {
-  return text.size() < width ? text + std::string(width - text.size(), ' ') : text;
-}
 
 void append_line(std::string& text, std::string line) {
   line.erase(line.find_last_not_of(' ') + 1);
@@ -43,10 +33,8 @@ TextColumn text_column(const ScoreSummary& summary, std::size_t c) {
   column.width = column.title.size();
   for (const std::vector<Interval>& row : summary.cells) {
     const Interval& cell = row[c];
-    column.values.push_back(formatted("%.4g", cell.value));
-    column.intervals.push_back(std::isnan(cell.low) ? ""
-                                                    : formatted("%.3g", cell.low) + ".." +
-                                                          formatted("%.3g", cell.high));
+    column.values.push_back(figure_text(cell.value, 4));
+    column.intervals.push_back(interval_text(cell, "..", 3));
     column.width =
         std::max({column.width, column.values.back().size(), column.intervals.back().size()});
   }
@@ -66,7 +54,7 @@ std::string text_of_columns(const ScoreSummary& summary, const std::vector<TextC
       intervals += padded(column.intervals[r], column.width);
     }
     append_line(text, values);
-    append_line(text, intervals);
+    if (intervals.find_first_not_of(' ') != std::string::npos) append_line(text, intervals);
   }
   return text;
 }
@@ -78,11 +66,19 @@ std::filesystem::path samples_file(const std::string& output) {
 
 }  // namespace
 
-std::string csv_number(double value) {
-  if (std::isnan(value)) return "";
-  char text[40];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
+std::string csv_number(double value) { return std::isnan(value) ? "" : in_digits(value, 9); }
+
+std::string figure_text(double value, int digits) {
+  return std::isnan(value) ? "-" : in_digits(value, digits);
+}
+
+std::string interval_text(const Interval& interval, const std::string& to, int digits) {
+  if (std::isnan(interval.low)) return "";
+  return in_digits(interval.low, digits) + to + in_digits(interval.high, digits);
+}
+
+std::string padded(const std::string& text, std::size_t width) {
+  return text + std::string(width - std::min(width, text.size()), ' ');
 }
 
 std::string csv_text(const std::string& text) {
@@ -107,6 +103,12 @@ Json to_json(const Interval& interval) {
           {"low", json_number(interval.low)},
           {"high", json_number(interval.high)},
           {"samples", interval.samples}};
+}
+
+BootstrapOptions bootstrap_of(const Context& context) {
+  BootstrapOptions options;
+  options.seed = context.seed;
+  return options;
 }
 
 ScoreSummary summary_of(const ScoreTable& table, const BootstrapOptions& options) {
@@ -176,6 +178,22 @@ std::string to_csv(const ScoreTable& table) {
     text += "\n";
   }
   return text;
+}
+
+void add_score_output(CLI::App& verb, std::string& output, const std::string& each) {
+  verb.add_option("-o,--output", output,
+                  each.empty() ? "F.json; also writes F.csv, the table"
+                               : "F.json; also writes F.csv, the table, and F.samples.csv, " + each)
+      ->type_name("FILE")
+      ->check(not_empty("a name ending in .json"));
+}
+
+Json score_report(const CLI::App& verb, const Context& context, const Json& measured,
+                  const std::string& rows, const ScoreSummary& summary) {
+  Json report = {{"settings", settings_of(verb, context)}};
+  report.update(measured);
+  report[rows] = to_json(summary);
+  return report;
 }
 
 void check_score_files(const std::string& output,

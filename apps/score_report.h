@@ -19,10 +19,22 @@ struct ScoreSummary {
   std::vector<std::vector<Interval>> cells;  ///< by row, then column
 };
 
+/// @return intervals drawn by the program's seed
+BootstrapOptions bootstrap_of(const Context& context);
+
 ScoreSummary summary_of(const ScoreTable& table, const BootstrapOptions& options);
 
 /// @return {value, low, high, samples}, numbers as json_number() has them
 Json to_json(const Interval& interval);
+
+/// @return the figure in so many digits; "-" for NaN
+std::string figure_text(double value, int digits);
+
+/// @return "1.2..3.4", with `to` between; empty where the interval is not known
+std::string interval_text(const Interval& interval, const std::string& to, int digits);
+
+/// @return the text, and blanks up to this width
+std::string padded(const std::string& text, std::size_t width);
 
 /// @return lines for a terminal: each figure, and below it its interval
 /// @param most_columns  side by side
@@ -50,8 +62,17 @@ std::string to_csv(const ScoreSummary& summary);
 /// @return a line for each row of the table: method, sample, group and all scores
 std::string to_csv(const ScoreTable& table);
 
-/// @brief Fails before the work: throws ps::Error unless FILE.json, FILE.csv and FILE.samples.csv
-/// can be written and are none of the inputs. An empty path is none.
+/// @brief Adds -o,--output, for FILE.json with FILE.csv beside it.
+/// @param each  whose scores stand in FILE.samples.csv: "every frame"; empty = there is none
+void add_score_output(CLI::App& verb, std::string& output, const std::string& each = "");
+
+/// @return the report of a verb: its settings, `measured`, and under `rows` what it came to
+Json score_report(const CLI::App& verb, const Context& context, const Json& measured,
+                  const std::string& rows, const ScoreSummary& summary);
+
+/// @brief Fails before the work: throws as check_output_file() does unless FILE.json, FILE.csv and
+/// FILE.samples.csv can be written, and ps::Error unless they are none of the inputs. An empty path
+/// is none.
 void check_score_files(const std::string& output,
                        const std::vector<std::filesystem::path>& inputs = {});
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 
 #include "apps/chart_picture.h"
@@ -17,19 +16,11 @@ namespace {
 constexpr std::size_t kSheetColumns = 3;
 constexpr double kTie = 1.02;  ///< steps are too far apart to tell less
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
+std::string number(double value) { return figure_text(value, 4); }
 
 /// Of where a method breaks; "none" = it never does.
 std::string breaks(const stress::Curve& curve) {
   return std::isinf(curve.breaks) ? "none" : number(curve.breaks);
-}
-
-std::string padded(const std::string& text, std::size_t width) {
-  return text + std::string(width - std::min(width, text.size()), ' ');
 }
 
 Image sheet_at(const stress::Axis& axis, const stress::AxisResult& result, std::size_t step) {
@@ -92,17 +83,22 @@ bool beaten(const StressRow& row, std::string* by) {
 
 }  // namespace
 
+std::vector<std::string> axis_files(const std::string& axis) {
+  return {axis + ".png", axis + ".svg", axis + "-before.png", axis + "-after.png"};
+}
+
 void write_axis_pictures(OutputFolder& out, StressRow& row) {
   const stress::Axis& axis = row.axis;
   const ChartPicture chart = chart_of(axis, row.result);
-  out.write(axis.name + ".png", [&](const auto& path) { write_chart_png(path, chart); });
-  out.write(axis.name + ".svg", [&](const auto& path) { write_chart_svg(path, chart); });
+  const std::vector<std::string> files = axis_files(axis.name);
+  out.write(files[0], [&](const auto& path) { write_chart_png(path, chart); });
+  out.write(files[1], [&](const auto& path) { write_chart_svg(path, chart); });
   const std::size_t first = row.result.curves[0].first_broken(axis);
   if (first > 0) {
-    write_picture(out, axis.name + "-before.png", sheet_at(axis, row.result, first - 1));
+    write_picture(out, files[2], sheet_at(axis, row.result, first - 1));
   }
   if (first < axis.values.size()) {
-    write_picture(out, axis.name + "-after.png", sheet_at(axis, row.result, first));
+    write_picture(out, files[3], sheet_at(axis, row.result, first));
   }
   for (stress::Curve& curve : row.result.curves) {
     for (stress::Step& step : curve.steps) step.picture.release();

@@ -21,6 +21,9 @@ struct StressRow {
 /// is). Then empties the result's pictures.
 void write_axis_pictures(OutputFolder& out, StressRow& row);
 
+/// @return the files that write_axis_pictures() may write
+std::vector<std::string> axis_files(const std::string& axis);
+
 /// @return a line for each axis: the breaking points of all methods
 std::string breaking_table(const std::vector<StressRow>& rows);
 

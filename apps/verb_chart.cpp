@@ -15,6 +15,7 @@
 #include "apps/program.h"
 #include "apps/progress.h"
 #include "io/photo.h"
+#include "libps/core/words.h"
 
 namespace ps::apps {
 namespace {
@@ -64,6 +65,11 @@ std::vector<KnobChart> measured(const ChartKnobs& knobs, const ChartSamples& sam
   return charts;
 }
 
+/// The files of a knob.
+std::vector<std::string> knob_files(const std::string& knob) {
+  return {knob + ".png", knob + ".svg", knob + ".samples.csv"};
+}
+
 void write_charts(OutputFolder& folder, const std::vector<KnobChart>& charts,
                   const BootstrapOptions& bootstrap, const std::string& about) {
   std::vector<Image> pictures;
@@ -71,12 +77,10 @@ void write_charts(OutputFolder& folder, const std::vector<KnobChart>& charts,
     throw_if_interrupted();
     const ChartPicture picture = picture_of(chart);
     pictures.push_back(chart_image(picture));
-    folder.write(chart.knob.name + ".png",
-                 [&](const Path& file) { write_image(file, pictures.back()); });
-    folder.write(chart.knob.name + ".svg",
-                 [&](const Path& file) { write_chart_svg(file, picture); });
-    folder.write(chart.knob.name + ".samples.csv",
-                 [&](const Path& file) { write_text(file, to_csv(chart.result.table)); });
+    const std::vector<std::string> files = knob_files(chart.knob.name);
+    folder.write(files[0], [&](const Path& file) { write_image(file, pictures.back()); });
+    folder.write(files[1], [&](const Path& file) { write_chart_svg(file, picture); });
+    folder.write(files[2], [&](const Path& file) { write_text(file, to_csv(chart.result.table)); });
   }
   folder.write("chart.png", [&](const Path& file) { write_image(file, grid_of(pictures, 2)); });
   folder.write("chart.csv", [&](const Path& file) { write_text(file, to_csv(charts)); });
@@ -96,14 +100,14 @@ void run_chart(const ChartArguments& a, const CLI::App& verb, const Context& con
   note_interrupts();
   const Stopwatch total;
   OutputFolder folder(a.output);
+  for (const std::string& knob : knob_names()) folder.clears(knob_files(knob));
   const ChartKnobs knobs(a.knobs, context);
   const auto views = static_cast<std::size_t>(size.views);
   const ChartSamples samples = a.frames.data.empty() ? room_samples(views, size.side, context)
                                                      : frame_samples(a.frames, views, context);
   const Display display(Display::Need::picture);  // fails before the work
   const Json machine = machine_report();
-  BootstrapOptions bootstrap;
-  bootstrap.seed = context.seed;
+  const BootstrapOptions bootstrap = bootstrap_of(context);
   const std::vector<KnobChart> charts = measured(knobs, samples, bootstrap, context);
   write_charts(folder, charts, bootstrap, about_line(machine, samples, context));
   Json report = {{"settings", settings_of(verb, context)},
@@ -118,8 +122,8 @@ void run_chart(const ChartArguments& a, const CLI::App& verb, const Context& con
   for (const KnobChart& chart : charts) text += text_of(summary_of(chart, bootstrap)) + "\n";
   if (!context.json) print_text(text + "* default, + on the Pareto front\n");
   end_run(context, report, a.output,
-          std::to_string(charts.size()) + " knobs on " + std::to_string(samples.count) +
-              " pairs of views");
+          counted(charts.size(), "knob") + " on " +
+              counted(samples.count, "pair of views", "pairs of views"));
 }
 
 void add_options(CLI::App& verb, ChartArguments& a) {
@@ -153,8 +157,8 @@ void add_options(CLI::App& verb, ChartArguments& a) {
                   "Folder of depth-*.safetensors, depth networks of several widths, for the knob "
                   "width, which is left out else")
       ->type_name("DIR");
-  verb.add_option("--lpips", a.knobs.lpips, "Weights of LPIPS, for a perceptual score")
-      ->type_name("FILE");
+  add_lpips_option(verb, a.knobs.lpips,
+                   " of whole pictures: in the knobs samples and selection alone");
 }
 
 }  // namespace

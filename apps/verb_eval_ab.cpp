@@ -13,11 +13,11 @@
 #include "apps/progress.h"
 #include "apps/report.h"
 #include "apps/verb_eval.h"
-#include "io/atomic_file.h"
 #include "io/data_uri.h"
 #include "io/image_listing.h"
 #include "io/photo.h"
 #include "libps/core/error.h"
+#include "libps/core/words.h"
 
 namespace ps::apps {
 namespace {
@@ -55,7 +55,9 @@ std::vector<std::string> names_in_both(const EvalAbArguments& args, const FilesB
   if (names.empty())
     throw Error(args.b, "no image has the name of one in " + args.a, "equal names");
   const std::size_t alone = a.size() + b.size() - 2 * names.size();
-  if (alone > 0) context.warn(std::to_string(alone) + " images are in one folder alone");
+  if (alone > 0) {
+    context.warn(counted(alone, "image is", "images are") + " in one folder alone");
+  }
   const std::size_t most = args.pairs > 0 ? static_cast<std::size_t>(args.pairs) : names.size();
   std::vector<std::string> drawn;
   for (const std::size_t i : shuffled(names.size(), context.seed, 3)) {
@@ -137,9 +139,7 @@ void run_eval_ab(const EvalAbArguments& args, const Context& context) {
   const AbPage page = make_page(args, context);
   throw_if_interrupted();
   const std::string html = html_of(page);
-  AtomicFile file(args.output);
-  file.write(html);
-  file.commit();
+  write_text(args.output, html);
   const auto sentinels = std::count_if(page.trials.begin(), page.trials.end(),
                                        [](const AbTrial& trial) { return trial.sentinel; });
   Json report = {{"output", args.output},
@@ -151,8 +151,7 @@ void run_eval_ab(const EvalAbArguments& args, const Context& context) {
                  {"mebibytes", static_cast<double>(html.size()) / (1 << 20)}};
   add_costs(report, total);
   end_run(context, report, args.output,
-          std::to_string(page.trials.size()) + " questions about " +
-              std::to_string(page.pairs.size()) + " pairs");
+          counted(page.trials.size(), "question") + " about " + counted(page.pairs.size(), "pair"));
 }
 
 void add_options(CLI::App& verb, EvalAbArguments& a) {

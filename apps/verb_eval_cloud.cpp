@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "apps/verb_eval.h"
 #include "io/cloud_file.h"
 #include "libps/core/error.h"
+#include "libps/core/words.h"
 #include "libps/eval/cloud_intervals.h"
 
 namespace ps::apps {
@@ -31,11 +31,10 @@ ScoreSummary summary_of(const std::string& cloud, const CloudIntervals& found) {
     summary.cells.front().push_back(i);
   };
   for (const CloudScoreInterval& score : found.scores) {
-    char at[32];
-    std::snprintf(at, sizeof at, " %g m", score.threshold);
-    add(std::string("accuracy") + at, "", true, score.accuracy);
-    add(std::string("completeness") + at, "", true, score.completeness);
-    add(std::string("F-score") + at, "", true, score.f_score);
+    const std::string at = " " + in_digits(score.threshold) + " m";
+    add("accuracy" + at, "", true, score.accuracy);
+    add("completeness" + at, "", true, score.completeness);
+    add("F-score" + at, "", true, score.f_score);
   }
   add("chamfer", "m", false, found.chamfer);
   return summary;
@@ -51,18 +50,15 @@ void run_eval_cloud(const EvalCloudArguments& a, const CLI::App& verb, const Con
   check_score_files(a.output, {a.cloud, a.truth});
   const Stopwatch total;
   const Cloud cloud = read_points(a.cloud), truth = read_points(a.truth);
-  BootstrapOptions options;
-  options.seed = context.seed;
-  const CloudIntervals found = cloud_intervals(cloud, truth, a.thresholds, a.block, options);
+  const CloudIntervals found =
+      cloud_intervals(cloud, truth, a.thresholds, a.block, bootstrap_of(context));
   const ScoreSummary summary = summary_of(fs::path(a.cloud).filename().string(), found);
-  const Json report = {{"settings", settings_of(verb, context)},
-                       {"points", cloud.size()},
-                       {"true_points", truth.size()},
-                       {"clouds", to_json(summary)}};
+  const Json measured = {{"points", cloud.size()}, {"true_points", truth.size()}};
   end_scores(
       context,
-      {a.output, a.cloud, report, summary, nullptr,
-       std::to_string(cloud.size()) + " points scored against " + std::to_string(truth.size()), 3},
+      {a.output, a.cloud, score_report(verb, context, measured, "clouds", summary), summary,
+       nullptr, counted(cloud.size(), "point") + " scored against " + std::to_string(truth.size()),
+       3},
       total);
 }
 
@@ -87,8 +83,7 @@ void add_eval_cloud(CLI::App& eval, const Context& context) {
   verb->add_option("--block", a->block, "Side of the blocks that are drawn for intervals, metres")
       ->type_name("M")
       ->check(in_range(1e-6, kNoBound));
-  verb->add_option("-o,--output", a->output, "F.json; also writes F.csv, the table")
-      ->type_name("FILE");
+  add_score_output(*verb, a->output);
   verb->callback([a, verb, &context] { run_eval_cloud(*a, *verb, context); });
 }
 

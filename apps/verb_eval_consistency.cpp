@@ -15,6 +15,7 @@
 #include "apps/score_report.h"
 #include "apps/verb_eval.h"
 #include "libps/core/error.h"
+#include "libps/core/words.h"
 #include "libps/eval/cloud_metrics.h"
 #include "libps/eval/consistency.h"
 #include "libps/geometry/point.h"
@@ -85,17 +86,14 @@ ScoreTable measure(const EvalConsistencyArguments& a, const ChosenFrames& frames
                    const Context& context) {
   ScoreTable table(columns());
   SceneOptions options = a.scene.scene(context);
-  options.outpaint.progress = [](double) {
-    throw_if_interrupted();
-    return true;
-  };
+  options.outpaint.progress = unless_interrupted;
   PlanOptions plan_options = a.scene.plan();
   plan_options.views_per_direction = 2;
   ViewRendererOptions renderer;
   renderer.seed = context.seed;
   Progress progress(context, "scenes", frames.chosen.size() * a.methods.size());
   for (std::size_t i = 0; i < frames.chosen.size(); ++i) {
-    View input = frames.all.load(frames.chosen[i]);
+    View input = frames.load(i);
     complete_depth(input, models.depth(), a.estimate_depth);
     for (const std::string& method : a.methods) {
       plan_options.strategy = strategy_of(method);
@@ -104,7 +102,7 @@ ScoreTable measure(const EvalConsistencyArguments& a, const ChosenFrames& frames
                                     plan_options.strategy, models.networks(), options, renderer);
       const double seconds = watch.seconds();
       table.add(
-          {method, frames.all.frames[frames.chosen[i]].name, frames.groups[i],
+          {method, frames.name(i), frames.groups[i],
            scores_of(shown, shown.scene.cloud(), shown.scene.lens(), input, perceptual, seconds)});
       progress.update(table.rows().size());
     }
@@ -121,16 +119,13 @@ void run_eval_consistency(const EvalConsistencyArguments& a, const CLI::App& ver
   const PerceptualModel perceptual(a.lpips);
   const ChosenFrames frames = choose_posed_frames(a.frames, context);
   const ScoreTable table = measure(a, frames, models, perceptual.distance(), context);
-  BootstrapOptions options;
-  options.seed = context.seed;
-  const ScoreSummary summary = summary_of(table, options);
-  const Json report = {{"settings", settings_of(verb, context)},
-                       {"frames", frames_report(a.frames, frames)},
-                       {"methods", to_json(summary)}};
-  end_scores(context,
-             {a.output, a.frames.data, report, summary, &table,
-              "consistency of " + std::to_string(frames.chosen.size()) + " scenes scored"},
-             total);
+  const ScoreSummary summary = summary_of(table, bootstrap_of(context));
+  const Json measured = {{"frames", frames_report(a.frames, frames)}};
+  end_scores(
+      context,
+      {a.output, a.frames.data, score_report(verb, context, measured, "methods", summary), summary,
+       &table, "consistency of " + counted(frames.chosen.size(), "scene") + " scored"},
+      total);
 }
 
 }  // namespace
@@ -138,13 +133,15 @@ void run_eval_consistency(const EvalConsistencyArguments& a, const CLI::App& ver
 void add_eval_consistency(CLI::App& eval, const Context& context) {
   auto* verb = eval.add_subcommand(
       "consistency",
-      "How well views of one scene agree (SPEC 11): each frame becomes a scene, and in each "
-      "direction the view at the extreme is held against the one half way, by homography, both "
-      "ways, on their overlap. Also of each scene: the median relative step of depth across the "
-      "seam of what was outpainted, and between seen pixels just before it, and the share of "
-      "outpainted points that stand before what the "
-      "input saw.\n"
-      "Below each mean its 95 % bootstrap interval over rooms, or over twentieths of a walk.");
+      std::string(
+          "How well views of one scene agree (SPEC 11): each frame becomes a scene, and in each "
+          "direction the view at the extreme is held against the one half way, by homography, both "
+          "ways, on their overlap. Also of each scene: the median relative step of depth across "
+          "the "
+          "seam of what was outpainted, and between seen pixels just before it, and the share of "
+          "outpainted points that stand before what the "
+          "input saw.") +
+          kIntervalsHelp);
   auto a = std::make_shared<EvalConsistencyArguments>();
   a->frames.add_to(*verb);
   add_names(*verb, "--methods", a->methods, "Of support, sequential, independent", all_methods());
@@ -152,9 +149,7 @@ void add_eval_consistency(CLI::App& eval, const Context& context) {
   a->scene.add_outpaint_options(*verb);
   verb->add_flag("--estimate-depth", a->estimate_depth, "Look at no true depth of the frames");
   add_lpips_option(*verb, a->lpips);
-  verb->add_option("-o,--output", a->output,
-                   "F.json; also writes F.csv, the table, and F.samples.csv, every frame")
-      ->type_name("FILE");
+  add_score_output(*verb, a->output, "every frame");
   verb->callback([a, verb, &context] { run_eval_consistency(*a, *verb, context); });
 }
 

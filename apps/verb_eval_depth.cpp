@@ -12,6 +12,7 @@
 #include "apps/score_report.h"
 #include "apps/verb_eval.h"
 #include "libps/core/error.h"
+#include "libps/core/words.h"
 #include "libps/eval/depth_baselines.h"
 #include "libps/eval/depth_metrics.h"
 
@@ -50,7 +51,7 @@ DepthBaselines learnt_baselines(const ChosenFrames& frames, const Context& conte
   bool any = false;
   Progress progress(context, "baselines", frames.chosen.size());
   for (std::size_t i = 0; i < frames.chosen.size(); ++i) {
-    const View view = frames.all.load(frames.chosen[i]);
+    const View view = frames.load(i);
     any = any || has_depth(view);
     baselines.learn(view.depth);
     progress.update(i + 1);
@@ -67,8 +68,8 @@ ScoreTable measure(const ChosenFrames& frames, const DepthModel& model, const Co
   ScoreTable table(columns());
   Progress progress(context, "depth", frames.chosen.size());
   for (std::size_t i = 0; i < frames.chosen.size(); ++i) {
-    const View view = frames.all.load(frames.chosen[i]);
-    const std::string& name = frames.all.frames[frames.chosen[i]].name;
+    const View view = frames.load(i);
+    const std::string& name = frames.name(i);
     if (has_depth(view)) {
       const auto add = [&](const char* method, const Depth& depth) {
         table.add({method, name, frames.groups[i], scores_of(depth, view.depth)});
@@ -90,17 +91,12 @@ void run_eval_depth(const EvalDepthArguments& a, const CLI::App& verb, const Con
   const ChosenFrames frames = choose_posed_frames(a.frames, context);
   const ScoreTable table = measure(frames, model, context);
   throw_if_interrupted();
-  BootstrapOptions options;
-  options.seed = context.seed;
-  const ScoreSummary summary = summary_of(table, options);
-  const Json report = {{"settings", settings_of(verb, context)},
-                       {"frames", frames_report(a.frames, frames)},
-                       {"weights", model.weights},
-                       {"methods", to_json(summary)}};
+  const ScoreSummary summary = summary_of(table, bootstrap_of(context));
+  const Json measured = {{"frames", frames_report(a.frames, frames)}, {"weights", model.weights}};
   const std::size_t scored = table.rows().size() / table.methods().size();
   end_scores(context,
-             {a.output, a.frames.data, report, summary, &table,
-              "depth of " + std::to_string(scored) + " frames scored"},
+             {a.output, a.frames.data, score_report(verb, context, measured, "methods", summary),
+              summary, &table, "depth of " + counted(scored, "frame") + " scored"},
              total);
 }
 
@@ -109,18 +105,18 @@ void run_eval_depth(const EvalDepthArguments& a, const CLI::App& verb, const Con
 void add_eval_depth(CLI::App& eval, const Context& context) {
   auto* verb = eval.add_subcommand(
       "depth",
-      "Scores estimated depth against true depth: AbsRel, RMSE and delta_1 to delta_3 (shares "
-      "within 1.25, 1.25^2, 1.25^3), each image scaled to the true median, and raw. Beside it what "
-      "knows nothing of the photo: a constant, and a ramp by rows, both learnt from the very "
-      "depths "
-      "that are scored.\n"
-      "Below each mean its 95 % bootstrap interval over rooms, or over twentieths of a walk.");
+      std::string(
+          "Scores estimated depth against true depth: AbsRel, RMSE and delta_1 to delta_3 (shares "
+          "within 1.25, 1.25^2, 1.25^3), each image scaled to the true median, and raw. Beside it "
+          "what "
+          "knows nothing of the photo: a constant, and a ramp by rows, both learnt from the very "
+          "depths "
+          "that are scored.") +
+          kIntervalsHelp);
   auto a = std::make_shared<EvalDepthArguments>();
   a->frames.add_to(*verb);
   add_weights_option(*verb, a->weights);
-  verb->add_option("-o,--output", a->output,
-                   "F.json; also writes F.csv, the table, and F.samples.csv, every frame")
-      ->type_name("FILE");
+  add_score_output(*verb, a->output, "every frame");
   verb->callback([a, verb, &context] { run_eval_depth(*a, *verb, context); });
 }
 

@@ -20,6 +20,7 @@
 #include "apps/verb_eval.h"
 #include "io/photo.h"
 #include "libps/core/error.h"
+#include "libps/core/words.h"
 #include "libps/eval/frechet.h"
 #include "libps/eval/view_scores.h"
 
@@ -45,19 +46,14 @@ std::vector<ScoreColumn> columns() {
 
 std::vector<FramePair> pairs_of(const EvalViewsArguments& a, const ChosenFrames& frames,
                                 const Context& context) {
-  std::vector<Pose> poses;
-  std::vector<int> worlds;
-  for (const std::size_t i : frames.chosen) {
-    poses.push_back(frames.all.frames[i].world_from_cam);
-    worlds.push_back(frames.all.frames[i].world);
-  }
   const PairRange range = a.wide ? kWidePairs : a.range;
-  std::vector<FramePair> pairs = choose_pairs(poses, worlds, range, a.pairs, context.seed);
+  std::vector<FramePair> pairs = choose_pairs_lazily(
+      frames.worlds(), [&](std::size_t i) { return frames.pose(i); }, range, a.pairs, context.seed);
   if (!pairs.empty()) return pairs;
-  char asked[100];
-  std::snprintf(asked, sizeof asked, "%g to %g degrees and at most %g m apart",
-                range.least_rotation, range.most_rotation, range.most_distance);
-  throw Error(a.frames.data, std::string("no two of its frames are ") + asked,
+  throw Error(a.frames.data,
+              "no two of its frames are " + in_digits(range.least_rotation) + " to " +
+                  in_digits(range.most_rotation) + " degrees and at most " +
+                  in_digits(range.most_distance) + " m apart",
               "a wider range, or more frames");
 }
 
@@ -88,6 +84,9 @@ void write_pictures(OutputFolder& folder, std::size_t number, const PairPictures
   });
 }
 
+/// Of an image's pixels; null where that is not known.
+Json share_of(const Mask& mask) { return mask.empty() ? Json() : Json(cv::mean(mask)[0]); }
+
 /// Scores all methods on one pair after another.
 class ViewsRun {
  public:
@@ -101,10 +100,7 @@ class ViewsRun {
     if (const auto features = perceptual.features()) frechet_.emplace(*features);
     ViewMethodOptions options;
     options.scene = a_.scene.scene(context);
-    options.scene.outpaint.progress = [](double) {
-      throw_if_interrupted();
-      return true;
-    };
+    options.scene.outpaint.progress = unless_interrupted;
     options.renderer.seed = context.seed;
     for (const std::string& name : a_.methods) {
       methods_.push_back(make_view_method(name, models.networks(), options));
@@ -122,10 +118,17 @@ class ViewsRun {
   const ScoreTable& table() const { return table_; }
   const Json& pairs() const { return pairs_; }
 
+  /// Says why parts of pictures have no score, where that is so.
+  void warn_of_unknown_parts(const Context& context) const {
+    if (without_depth_ == 0) return;
+    context.warn(a_.frames.data + ": " + std::to_string(without_depth_) + " of " +
+                 counted(pairs_.size(), "pair") +
+                 " without true depth of both frames: what the input sees is not known there, and "
+                 "not scored by itself");
+  }
+
   ScoreSummary summary(const Context& context) const {
-    BootstrapOptions options;
-    options.seed = context.seed;
-    ScoreSummary summary = summary_of(table_, options);
+    ScoreSummary summary = summary_of(table_, bootstrap_of(context));
     if (!frechet_) return summary;
     // Without an interval: resamples repeat pictures, which narrows what is fitted to them.
     summary.columns.push_back({frechet_name(frechet_->network()), "", false});
@@ -138,23 +141,21 @@ class ViewsRun {
 
  private:
   PairPictures measure(const FramePair& pair, Progress& progress) {
-    const std::size_t source = frames_.chosen[pair.source], target = frames_.chosen[pair.target];
-    View input = frames_.all.load(source);
-    View truth = frames_.all.load(target);
-    // By true depth, where there is one.
-    if (!has_depth(truth)) truth.depth.release();
-    const bool measured = has_depth(input);
-    Visibility visibility;
-    if (measured) visibility = true_visibility(input, truth);
+    View input = frames_.load(pair.source);
+    const View truth = frames_.load(pair.target);
+    Visibility visibility;  // empty = not known
+    if (has_depth(input) && has_depth(truth)) {
+      visibility = true_visibility(input, truth);
+    } else {
+      ++without_depth_;
+    }
     complete_depth(input, models_.depth(), a_.estimate_depth);
-    if (!measured) visibility = true_visibility(input, truth);
-    const std::string name =
-        frames_.all.frames[source].name + " to " + frames_.all.frames[target].name;
+    const std::string name = frames_.name(pair.source) + " to " + frames_.name(pair.target);
     pairs_.push_back({{"pair", name},
                       {"rotation", pair.rotation},
                       {"distance", pair.distance},
-                      {"visible_share", cv::mean(visibility.visible)[0]},
-                      {"invisible_share", cv::mean(visibility.invisible)[0]}});
+                      {"visible_share", share_of(visibility.visible)},
+                      {"invisible_share", share_of(visibility.invisible)}});
     PairPictures pictures(input, truth);
     if (frechet_) frechet_->add_truth(truth.color);
     for (std::size_t m = 0; m < methods_.size(); ++m) {
@@ -181,14 +182,19 @@ class ViewsRun {
   std::vector<std::unique_ptr<ViewMethod>> methods_;
   ScoreTable table_;
   Json pairs_ = Json::array();
+  std::size_t without_depth_ = 0;  ///< pairs
 };
 
 void run_eval_views(const EvalViewsArguments& a, const CLI::App& verb, const Context& context) {
+  check_order("--min-rotation", a.range.least_rotation, "--max-rotation", a.range.most_rotation);
   check_score_files(a.output);
   note_interrupts();
   const Stopwatch total;
   std::optional<OutputFolder> folder;
-  if (!a.pictures.empty()) folder.emplace(a.pictures);
+  if (!a.pictures.empty()) {
+    folder.emplace(a.pictures);
+    for (const std::string& method : view_method_names()) folder->clears({method + "/pair_#.png"});
+  }
   const ChosenFrames frames = choose_posed_frames(a.frames, context);
   const std::vector<FramePair> pairs = pairs_of(a, frames, context);
   const MethodModels models(a.scene.weights, a.methods, context);
@@ -196,14 +202,12 @@ void run_eval_views(const EvalViewsArguments& a, const CLI::App& verb, const Con
   ViewsRun run(a, frames, models, perceptual, context);
   run.measure(pairs, folder ? &*folder : nullptr, context);
   const ScoreSummary summary = run.summary(context);
-  const Json report = {{"settings", settings_of(verb, context)},
-                       {"frames", frames_report(a.frames, frames)},
-                       {"pairs", run.pairs()},
-                       {"methods", to_json(summary)}};
+  run.warn_of_unknown_parts(context);
+  const Json measured = {{"frames", frames_report(a.frames, frames)}, {"pairs", run.pairs()}};
   if (folder) folder->commit();
   end_scores(context,
-             {a.output, a.frames.data, report, summary, &run.table(),
-              "views of " + std::to_string(pairs.size()) + " pairs scored"},
+             {a.output, a.frames.data, score_report(verb, context, measured, "methods", summary),
+              summary, &run.table(), "views of " + counted(pairs.size(), "pair") + " scored"},
              total);
 }
 
@@ -231,16 +235,18 @@ void add_pair_options(CLI::App& verb, EvalViewsArguments& a) {
 void add_eval_views(CLI::App& eval, const Context& context) {
   auto* verb = eval.add_subcommand(
       "views",
-      "How near views come to true ones: of pairs of frames one is the input, and what each method "
-      "shows from where the other stands is held against it. PSNR is over all pixels, those whose "
-      "surface the input sees by true depth, and those that it does not. With --lpips also LPIPS, "
-      "and a Frechet distance on features that the table names: it is no FID.\n"
-      "Methods: ours (keeps the likeliest completion); one-completion (of ours); by-classifier, "
-      "by-discriminator, by-both (keep the best in these eyes); sequential, independent; "
-      "no-outpainter (the refiner "
-      "fills in); rgb (colours as codes); mean-colour, telea, navier-stokes, nearest (plain fills "
-      "of what the cloud shows); copy (the input itself).\n"
-      "Below each mean its 95 % bootstrap interval over rooms, or over twentieths of a walk.");
+      std::string(
+          "How near views come to true ones: of pairs of frames one is the input, and what each "
+          "method shows from where the other stands is held against it. PSNR is over all pixels, "
+          "those whose surface the input sees by true depth of both, and those that it does not. "
+          "With --lpips also LPIPS, and a Frechet distance on features that the table names: it is "
+          "no FID.\n"
+          "Methods: ours (keeps the likeliest completion); one-completion (of ours); "
+          "by-classifier, by-discriminator, by-both (keep the best in these eyes); sequential, "
+          "independent; no-outpainter (the refiner fills in); rgb (colours as codes); mean-colour, "
+          "telea, navier-stokes, nearest (plain fills of what the cloud shows); copy (the input "
+          "itself).") +
+          kIntervalsHelp);
   auto a = std::make_shared<EvalViewsArguments>();
   a->frames.add_to(*verb);
   add_names(*verb, "--methods", a->methods, "Which of them", view_method_names());
@@ -248,9 +254,7 @@ void add_eval_views(CLI::App& eval, const Context& context) {
   a->scene.add_sampling_options(*verb);
   verb->add_flag("--estimate-depth", a->estimate_depth, "Show the methods no true depth");
   add_lpips_option(*verb, a->lpips);
-  verb->add_option("-o,--output", a->output,
-                   "F.json; also writes F.csv, the table, and F.samples.csv, every pair")
-      ->type_name("FILE");
+  add_score_output(*verb, a->output, "every pair");
   verb->add_option("--pictures", a->pictures,
                    "Folder for a sheet of each pair, and each method's pictures in a folder of "
                    "its own, as eval ab takes them")

@@ -14,6 +14,7 @@
 #include "apps/progress.h"
 #include "apps/stress_report.h"
 #include "libps/core/error.h"
+#include "libps/core/words.h"
 #include "libps/scene/stress_axes.h"
 
 namespace ps::apps {
@@ -79,6 +80,7 @@ void run_stress(const StressArguments& a, const CLI::App& verb, const Context& c
   note_interrupts();
   const Stopwatch total;
   OutputFolder out(a.output);
+  for (const std::string& axis : axis_names()) out.clears(axis_files(axis));
   const Display display(Display::Need::picture);  // fails before the work
   std::unique_ptr<MethodModels> models;
   const Axes axes = chosen_axes(
@@ -97,9 +99,9 @@ void run_stress(const StressArguments& a, const CLI::App& verb, const Context& c
   if (!context.json) print_text(breaking_table(rows));
   std::size_t violations = 0;
   for (const StressRow& row : rows) violations += row.result.violations.size();
-  end_run(context, report, a.output, std::to_string(rows.size()) + " axes put under stress");
+  end_run(context, report, a.output, counted(rows.size(), "axis", "axes") + " put under stress");
   if (violations > 0) {
-    throw Error(a.output, std::to_string(violations) + " violations, see stress.md", "none");
+    throw Error(a.output, counted(violations, "violation") + ", see stress.md", "none");
   }
 }
 

@@ -13,6 +13,7 @@
 #include "apps/train_part.h"
 #include "io/photo.h"
 #include "libps/core/error.h"
+#include "libps/core/words.h"
 
 namespace ps::apps {
 namespace {
@@ -91,11 +92,12 @@ void add_stage_options(CLI::App& verb, TrainOptions& o) {
         ->type_name("FILE|colours")
         ->required();
   }
+  auto* init = verb.add_option("--init", o.init, "Weights to begin with")->type_name("FILE");
   if (o.stage == "vqvae") {
     verb.add_flag("--keep-codes", o.keep_codes,
-                  "Train the decoder of --init alone: what was trained on its codes stays true");
+                  "Train the decoder of --init alone: what was trained on its codes stays true")
+        ->needs(init);
   }
-  verb.add_option("--init", o.init, "Weights to begin with")->type_name("FILE");
   whole("--steps", o.steps, "Steps in all; 0 = the stage's own");
   whole("--stop-after", o.stop_after, "Stop after so many steps of this run; 0 = never");
   verb.add_option("--learning-rate", o.learning_rate, "At most; 0 = the stage's own")
@@ -108,9 +110,7 @@ void add_stage_options(CLI::App& verb, TrainOptions& o) {
 std::string words_of(const std::map<std::string, double>& values) {
   std::string words;
   for (const auto& [name, value] : values) {
-    char text[96];
-    std::snprintf(text, sizeof text, "%s%s %.4g", words.empty() ? "" : ", ", name.c_str(), value);
-    words += text;
+    words += (words.empty() ? "" : ", ") + name + " " + in_digits(value, 4);
   }
   return words;
 }

@@ -22,9 +22,9 @@ namespace fs = std::filesystem;
 View load(const FrameFiles& files, const DepthCode& code) {
   return guarded(files.color.string(), [&] {
     View view;
-    view.world_from_cam = files.frame.world_from_cam;
+    view.world_from_cam = files.world_from_cam;
     view.color = read_photo(files.color).color;
-    view.intrinsics = fitted_lens(files.frame.lens, view.color.size(), files.color.string());
+    view.intrinsics = fitted_lens(files.lens, view.color.size(), files.color.string());
     if (files.depth.empty()) return view;
     view.depth = read_depth(files.depth, code.scale, NoDepth::allow);
     view.depth.setTo(0, view.depth >= code.unknown);
@@ -38,9 +38,8 @@ PosedFrames open_rgbd(const fs::path& path, double depth_scale) {
   const RgbdFolder folder = open_rgbd_folder(path, &skipped);
   std::vector<FrameFiles> files;
   for (const RgbdFrame& f : folder.frames) {
-    PosedFrame frame = {f.color.stem().string(), f.timestamp, 0, f.world_from_cam,
-                        folder.intrinsics};
-    files.push_back({std::move(frame), f.color, f.depth});
+    PosedFrame frame = {f.color.stem().string(), f.timestamp, 0};
+    files.push_back({std::move(frame), f.world_from_cam, folder.intrinsics, f.color, f.depth});
   }
   PosedFrames frames = frames_of("RGB-D folder", std::move(files), {depth_scale}, path.string());
   frames.skipped = skipped;
@@ -64,6 +63,7 @@ PosedFrames frames_of(const std::string& layout, std::vector<FrameFiles> files,
   frames.layout = layout;
   for (const FrameFiles& f : files) frames.frames.push_back(f.frame);
   const auto shared = std::make_shared<const std::vector<FrameFiles>>(std::move(files));
+  frames.pose = [shared](std::size_t i) { return shared->at(i).world_from_cam; };
   frames.load = [shared, code](std::size_t i) { return load(shared->at(i), code); };
   return frames;
 }

@@ -16,8 +16,6 @@ struct PosedFrame {
   std::string name;  ///< of its photo, for people; no two are equal
   double stamp = 0;  ///< timestamp, or frame number where there is none; rises within a world
   int world = 0;     ///< frames of one world have poses that go together
-  Pose world_from_cam = Pose::Identity();
-  Intrinsics lens;  ///< of its own size; load() gives that of the photo
 };
 
 /// @brief Frames with poses, wherever they come from.
@@ -26,6 +24,9 @@ struct PosedFrames {
   std::vector<PosedFrame> frames;    ///< one at least, by world, then stamp
   std::size_t skipped = 0;           ///< frames that lack a photo, a depth or a pose
   std::vector<std::string> assumed;  ///< what the data does not say, and what is taken instead
+  /// The pose of frame i, world_from_cam. Of rooms it is built when it is asked for, which is
+  /// quickest when frames of one world come one after another. Threads may call it at once.
+  std::function<Pose(std::size_t)> pose;
   /// Reads frame i. Its depth is empty where the layout has none; 0 where a pixel is unknown, which
   /// may be everywhere. Threads may call it at once. Throws ps::Error when a file is unsound.
   std::function<View(std::size_t)> load;
@@ -51,7 +52,8 @@ bool has_depth(const View& frame);
 /// each
 ///   room, of which the second to the fourth are turned by up to 60 degrees and moved by up to a
 ///   metre from the first. Exact, without camera effects. The rooms are those of `train data --seed
-///   SEED`: take a seed that nothing was trained on.
+///   SEED`: take a seed that nothing was trained on. A room is built when one of its frames is
+///   asked for.
 /// @param depth_scale  units of depth images in a metre; empty = as the layout has it
 /// Throws ps::Error when `data` is none of these, when what they name is missing, or when no frame
 /// has all that its layout promises.

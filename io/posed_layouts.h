@@ -15,6 +15,8 @@ namespace ps {
 /// A frame and the files it is read from.
 struct FrameFiles {
   PosedFrame frame;
+  Pose world_from_cam = Pose::Identity();
+  Intrinsics lens;  ///< of its own size; load() gives that of the photo
   std::filesystem::path color;
   std::filesystem::path depth;  ///< empty = there is none
 };

@@ -79,9 +79,12 @@ PosedFrames open_realestate10k(const fs::path& path) {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const fs::path* photo = named ? photos.find(poses[i].timestamp) : &photos.files[i];
     if (photo == nullptr || !poses[i].normalised_intrinsics) continue;
-    PosedFrame frame = {photo->stem().string(), poses[i].timestamp, 0, poses[i].world_from_cam,
-                        lens_of(*poses[i].normalised_intrinsics, size)};
-    files.push_back({std::move(frame), *photo, {}});
+    PosedFrame frame = {photo->stem().string(), poses[i].timestamp, 0};
+    files.push_back({std::move(frame),
+                     poses[i].world_from_cam,
+                     lens_of(*poses[i].normalised_intrinsics, size),
+                     *photo,
+                     {}});
   }
   const std::size_t whole = files.size();
   PosedFrames frames = frames_of("RealEstate10K", std::move(files), {}, lists.front().string());

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "io/posed_layouts.h"
 #include "io/text.h"
 #include "libps/core/error.h"
-#include "libps/core/parallel.h"
 #include "libps/core/random.h"
 #include "libps/scene/room_view.h"
 
@@ -47,6 +47,25 @@ rooms::Camera camera_of(const rooms::Room& room, std::uint64_t room_seed, std::s
   return rooms::moved(room, first, key(room_seed, view), kMostTurned, kMostMoved);
 }
 
+/// Those of one room are asked for together: the last room's are kept.
+Pose pose_of(const RoomSource& source, std::size_t i) {
+  struct Kept {
+    std::optional<std::uint64_t> room;
+    std::array<Pose, kViews> poses;
+  };
+  thread_local Kept kept;
+  const std::uint64_t seed = source.room_seed(i);
+  if (kept.room != seed) {
+    kept.room.reset();
+    const rooms::Room room(seed);
+    for (std::size_t view = 0; view < kViews; ++view) {
+      kept.poses[view] = room_pose(camera_of(room, seed, view));
+    }
+    kept.room = seed;
+  }
+  return kept.poses[i % kViews];
+}
+
 View load(const RoomSource& source, std::size_t i) {
   const rooms::Room room(source.room_seed(i));
   return shoot_view(room, camera_of(room, source.room_seed(i), i % kViews));
@@ -58,17 +77,13 @@ PosedFrames open_room_frames(const std::string& data) {
   const RoomSource source = parse(data);
   PosedFrames frames;
   frames.layout = "rooms";
-  frames.frames.resize(source.count);
-  parallel_for((source.count + kViews - 1) / kViews, [&](std::size_t r) {
-    const std::uint64_t seed = source.room_seed(r * kViews);
-    const rooms::Room room(seed);
-    for (std::size_t i = r * kViews; i < std::min(source.count, (r + 1) * kViews); ++i) {
-      const rooms::Camera camera = camera_of(room, seed, i % kViews);
-      frames.frames[i] = {"room-" + std::to_string(seed) + "-" + std::to_string(i % kViews),
-                          static_cast<double>(i), static_cast<int>(r), room_pose(camera),
-                          room_lens(camera)};
-    }
-  });
+  frames.frames.reserve(source.count);
+  for (std::size_t i = 0; i < source.count; ++i) {
+    frames.frames.push_back(
+        {"room-" + std::to_string(source.room_seed(i)) + "-" + std::to_string(i % kViews),
+         static_cast<double>(i), static_cast<int>(i / kViews)});
+  }
+  frames.pose = [source](std::size_t i) { return pose_of(source, i); };
   frames.load = [source](std::size_t i) { return load(source, i); };
   return frames;
 }

@@ -89,8 +89,8 @@ PosedFrames open_seven_scenes(const fs::path& path, double depth_scale) {
         ++skipped;
         continue;
       }
-      PosedFrame frame = {prefix + name, stamp, 0, read_pose(pose), lens};
-      files.push_back({std::move(frame), sequence / (name + kColor), depth});
+      PosedFrame frame = {prefix + name, stamp, 0};
+      files.push_back({std::move(frame), read_pose(pose), lens, sequence / (name + kColor), depth});
     }
     first = next;
   }

@@ -83,8 +83,8 @@ PosedFrames open_tum_folder(const fs::path& path, double depth_scale) {
     const auto pose = nearest(poses, color);
     if (pose == poses.end()) continue;
     const fs::path& photo = colors.at(color);
-    PosedFrame frame = {photo.stem().string(), color, 0, pose->second, lens};
-    files.push_back({std::move(frame), photo, depths.at(depth)});
+    PosedFrame frame = {photo.stem().string(), color, 0};
+    files.push_back({std::move(frame), pose->second, lens, photo, depths.at(depth)});
   }
   const std::size_t whole = files.size();
   PosedFrames frames = frames_of("TUM RGB-D", std::move(files), {depth_scale}, path.string());

@@ -86,7 +86,8 @@ std::vector<Block> blocks_of(const Cloud& cloud, const Cloud& truth,
 CloudIntervals nothing(const std::vector<double>& thresholds) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   CloudIntervals result;
-  for (const double threshold : thresholds) result.scores.push_back({threshold, {}, {}, {}});
+  const Interval none = {0, kNan, kNan, 0};
+  for (const double threshold : thresholds) result.scores.push_back({threshold, none, none, none});
   result.chamfer = {kNan, kNan, kNan, 0};
   return result;
 }

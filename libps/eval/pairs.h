@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "libps/geometry/view.h"
@@ -34,6 +35,16 @@ std::vector<FramePair> choose_pairs(const std::vector<Pose>& world_from_cams,
                                     const std::vector<int>& worlds, const PairRange& range,
                                     std::size_t most, std::uint64_t seed = 0);
 
+/// @brief The same pairs, where poses take work: they are asked for world by world, and of no more
+/// worlds than it takes to know the pairs. Of many small worlds and few pairs that is few.
+/// @param worlds  of each frame
+/// @param pose    of frame i, world_from_cam; threads call it at once
+/// Throws what `pose` does, too.
+std::vector<FramePair> choose_pairs_lazily(const std::vector<int>& worlds,
+                                           const std::function<Pose(std::size_t)>& pose,
+                                           const PairRange& range, std::size_t most,
+                                           std::uint64_t seed = 0);
+
 /// Of the target's pixels: a pixel is in at most one of the two.
 struct Visibility {
   Mask visible;    ///< its surface is seen by the source
@@ -42,16 +53,15 @@ struct Visibility {
 
 /// @brief Which of the target's pixels show what the source sees, by true depth.
 ///
-/// Where the target has a depth, its pixel is lifted and held against the source's depths at the
-/// four pixels around its projection: visible if it lies between these, where they are of one
+/// The target's pixel is lifted and held against the source's depths at the four pixels around its
+/// projection: visible if it lies between these, where they are of one
 /// surface, or is as deep as one of them, within 1 % and a footprint; else invisible if one is
 /// nearer. In neither mask is a pixel whose depth is not known, or the source's there, or where all
 /// of the source's are deeper, which cannot be.
 ///
-/// If the target has no depth at all (it is empty), the source's pixels are lifted, and squares
-/// between neighbours of one surface are drawn into the target: visible is what they cover,
-/// invisible the rest. What the source does not see may stand before that; it cannot be known then.
-/// @param source  with depth; colours are not looked at and may be empty
+/// Without depth of the target nothing is known: what the source does not see may stand before
+/// what it does.
+/// @param source, target  with depth; colours are not looked at and may be empty
 /// Throws ps::Error when a lens or pose is unsound or a depth is not of its lens's size.
 Visibility true_visibility(const View& source, const View& target);
 

@@ -94,6 +94,7 @@ Interval bootstrap(std::size_t count,
   std::vector<std::size_t> all(count);
   std::iota(all.begin(), all.end(), std::size_t{0});
   Interval interval = {figure(all), kNan, kNan, count};
+  if (count == 1) return interval;
   const std::vector<double> figures = resampled(count, figure, options);
   if (figures.empty()) return interval;
   // No interpolation between neighbours: they may be infinite.

@@ -17,8 +17,8 @@ double median(std::vector<double> values);
 /// A figure and what it would be of other samples like these.
 struct Interval {
   double value = 0;
-  double low = 0, high = 0;
-  std::size_t samples = 0;  ///< it was made of
+  double low = 0, high = 0;  ///< NaN = not known
+  std::size_t samples = 0;   ///< it was made of
 };
 
 struct BootstrapOptions {
@@ -31,7 +31,8 @@ struct BootstrapOptions {
 /// resamples of them give (Efron and Tibshirani, An Introduction to the Bootstrap, 1993, section
 /// 13.3). A function of the arguments alone, whatever the number of threads.
 /// @param figure  what things of these indices, in [0, count), any of them more than once, come to
-/// @return for no things all NaN; for one, all its own value. Resamples that give NaN are left out.
+/// @return for no things all NaN; for one its own value and no bounds (NaN), as one thing does not
+/// say how others would differ. Resamples that give NaN are left out.
 /// Throws ps::Error when an option is unsound.
 Interval bootstrap(std::size_t count,
                    const std::function<double(const std::vector<std::size_t>&)>& figure,

@@ -27,8 +27,12 @@ ViewScores view_scores(const Image& shown, const Image& truth, const Visibility&
                        const PerceptualDistance& perceptual) {
   ViewScores scores;
   scores.psnr = psnr(shown, truth);
-  scores.psnr_visible = psnr(shown, truth, visibility.visible);
-  scores.psnr_invisible = psnr(shown, truth, visibility.invisible);
+  // To psnr() an empty mask means all pixels.
+  const auto within = [&](const Mask& mask) {
+    return mask.empty() ? kNaN : psnr(shown, truth, mask);
+  };
+  scores.psnr_visible = within(visibility.visible);
+  scores.psnr_invisible = within(visibility.invisible);
   scores.ssim = ssim(shown, truth);
   scores.perceptual = perceptual ? perceptual(shown, truth) : kNaN;
   return scores;

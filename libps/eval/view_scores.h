@@ -19,7 +19,8 @@ struct ViewScores {
   double perceptual = 0;      ///< NaN when not measured
 };
 
-/// @param visibility  true_visibility() of input and target
+/// @param visibility  true_visibility() of input and target; masks without a pixel = it is not
+/// known, and neither are the scores of its two parts (NaN)
 /// @param perceptual  may be empty
 /// Throws ps::Error when sizes differ, and as `perceptual` does.
 ViewScores view_scores(const Image& shown, const Image& truth, const Visibility& visibility,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 #include <string>
 
 #include "libps/core/error.h"
@@ -55,7 +54,6 @@ Sight sight_of(const View& source, double u, double v, double z) {
   return *low < z ? Sight::hidden : Sight::unknown;
 }
 
-/// By the target's depth.
 Visibility looked_up(const View& source, const View& target) {
   const Pose source_from_target = source.world_from_cam.inverse() * target.world_from_cam;
   const Intrinsics& k = source.intrinsics;
@@ -77,60 +75,12 @@ Visibility looked_up(const View& source, const View& target) {
   return result;
 }
 
-/// The source's surface, square by square, drawn into the target.
-class SurfaceDrawing {
- public:
-  SurfaceDrawing(const View& source, const View& target)
-      : source_(source),
-        k_(target.intrinsics),
-        target_from_source_(target.world_from_cam.inverse() * source.world_from_cam),
-        drawn_(Mask::zeros(k_.height, k_.width)) {
-    for (int y = 0; y + 1 < source.depth.rows; ++y) {
-      for (int x = 0; x + 1 < source.depth.cols; ++x) draw(x, y);
-    }
-  }
-  const Mask& drawn() const { return drawn_; }
-
- private:
-  /// The square whose upper left corner is this pixel.
-  void draw(int x, int y) {
-    constexpr int kCorners[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    constexpr int kFractionBits = 4;
-    cv::Point corners[4];
-    float least = INFINITY, most = 0;
-    for (int i = 0; i < 4; ++i) {
-      const int u = x + kCorners[i][0], v = y + kCorners[i][1];
-      const float depth = source_.depth(v, u);
-      if (!known(depth)) return;
-      least = std::min(least, depth), most = std::max(most, depth);
-      const Eigen::Vector3d point = target_from_source_ * source_.intrinsics.lift(u, v, depth);
-      const Eigen::Vector2d at = k_.project(point);
-      if (!(point.z() > 0 && at.cwiseAbs().maxCoeff() < 1e6)) return;
-      corners[i] = cv::Point(static_cast<int>(std::lround(at.x() * (1 << kFractionBits))),
-                             static_cast<int>(std::lround(at.y() * (1 << kFractionBits))));
-    }
-    if (most - least > kEdgeFootprints * source_.intrinsics.footprint_per_metre() * least) return;
-    cv::fillConvexPoly(drawn_, corners, 4, 1, cv::LINE_8, kFractionBits);
-  }
-
-  const View& source_;
-  const Intrinsics& k_;
-  const Pose target_from_source_;
-  Mask drawn_;
-};
-
 }  // namespace
 
 Visibility true_visibility(const View& source, const View& target) {
   check_depth(source);
-  if (!target.depth.empty()) {
-    check_depth(target);
-    return looked_up(source, target);
-  }
-  check(target.intrinsics, kWhere);
-  checked_pose(target.world_from_cam.matrix(), kWhere);
-  const Mask visible = SurfaceDrawing(source, target).drawn();
-  return {visible, 1 - visible};
+  check_depth(target);
+  return looked_up(source, target);
 }
 
 }  // namespace ps

@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "libps/scene/fuse.h"
 
-#include <chrono>
 #include <future>
 #include <string>
 #include <system_error>
 
+#include "libps/core/clock.h"
 #include "libps/core/error.h"
 
 namespace ps {
-namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-}  // namespace
 
 Cloud fuse(const ViewSource& source, const FuseOptions& options, FuseReport* report,
            const std::function<bool(std::size_t, std::size_t)>& progress) {
@@ -38,14 +31,14 @@ Cloud fuse(const ViewSource& source, const FuseOptions& options, FuseReport* rep
   };
   start_loading(0);
   for (std::size_t i = 0; i < source.count; ++i) {
-    const auto before_load = std::chrono::steady_clock::now();
+    const auto before_load = now();
     const View view = next.get();
     start_loading(i + 1);
     sum.load_seconds += seconds_since(before_load);
     if (view.depth.empty()) {
       ++sum.empty;
     } else {
-      const auto before_add = std::chrono::steady_clock::now();
+      const auto before_add = now();
       sum.pixels += scene.add(view, static_cast<std::uint16_t>(i));
       sum.add_seconds += seconds_since(before_add);
       ++sum.views;

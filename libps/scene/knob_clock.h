@@ -2,16 +2,16 @@
 // Internal to the scene room.
 #pragma once
 
-#include <chrono>
+#include "libps/core/clock.h"
 
 namespace ps {
 
 /// @return seconds that `task` took
 template <class Task>
 double seconds_of(const Task& task) {
-  const auto start = std::chrono::steady_clock::now();
+  const Instant start = now();
   task();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return seconds_since(start);
 }
 
 }  // namespace ps

@@ -57,18 +57,18 @@ KnobSample room_sample(std::uint64_t seed, int side) {
   throw Error("room " + std::to_string(seed), "no two views of it are a pair", "another seed");
 }
 
-std::vector<FrameSet> choose_frame_sets(const std::vector<Pose>& world_from_cams,
-                                        const std::vector<int>& worlds, std::size_t most,
-                                        std::size_t apart, std::uint64_t seed) {
+std::vector<FrameSet> choose_frame_sets(const std::vector<int>& worlds,
+                                        const std::function<Pose(std::size_t)>& pose,
+                                        std::size_t most, std::size_t apart, std::uint64_t seed) {
   std::vector<FrameSet> sets;
-  for (const FramePair& pair : choose_pairs(world_from_cams, worlds, {}, most, seed)) {
-    const Pose& target = world_from_cams[pair.target];
+  for (const FramePair& pair : choose_pairs_lazily(worlds, pose, {}, most, seed)) {
+    const Pose target = pose(pair.target);
     std::vector<std::pair<double, std::size_t>> near;
-    for (std::size_t i = 0; i < world_from_cams.size(); ++i) {
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
       const std::size_t steps = i > pair.target ? i - pair.target : pair.target - i;
       if (i == pair.source || steps < std::max<std::size_t>(1, apart)) continue;
-      if (!worlds.empty() && worlds[i] != worlds[pair.target]) continue;
-      const Pose& other = world_from_cams[i];
+      if (worlds[i] != worlds[pair.target]) continue;
+      const Pose other = pose(i);
       const Eigen::AngleAxisd turn(target.linear().transpose() * other.linear());
       near.emplace_back((target.translation() - other.translation()).norm() + turn.angle(), i);
     }

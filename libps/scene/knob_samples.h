@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "libps/eval/knob.h"
@@ -27,9 +28,11 @@ struct FrameSet {
 /// world that look most like it, but for its neighbours: of a walk, the next frames show the same.
 /// @param most      samples
 /// @param apart     frames whose numbers differ by less than this are neighbours
-/// Throws as choose_pairs() does.
-std::vector<FrameSet> choose_frame_sets(const std::vector<Pose>& world_from_cams,
-                                        const std::vector<int>& worlds, std::size_t most,
-                                        std::size_t apart, std::uint64_t seed);
+/// @param worlds    of each frame
+/// @param pose      of frame i, world_from_cam; asked for as choose_pairs_lazily() does
+/// Throws as choose_pairs_lazily() does.
+std::vector<FrameSet> choose_frame_sets(const std::vector<int>& worlds,
+                                        const std::function<Pose(std::size_t)>& pose,
+                                        std::size_t most, std::size_t apart, std::uint64_t seed);
 
 }  // namespace ps

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
 #include "libps/core/error.h"
+#include "libps/core/words.h"
 #include "libps/eval/image_metrics.h"
 #include "libps/eval/pairs.h"
 #include "libps/geometry/point.h"
@@ -64,19 +64,13 @@ KnobTrial FusedSample::draw(const Cloud& points, SplatOptions options, double si
 
 std::vector<ScoreColumn> psnr_column() { return {{"PSNR where known", "dB", true}}; }
 
-std::string words(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
-}
-
 /// A knob that changes options of splats.
 template <class Set>
 Knob splat_knob(Knob knob, const std::vector<double>& values, double standard, const Set& set) {
   knob.timed = kTimed;
   knob.scores = psnr_column();
   knob.repeats = kRepeats;
-  for (const double value : values) knob.settings.push_back({words(value), value == standard});
+  for (const double value : values) knob.settings.push_back({in_digits(value), value == standard});
   knob.prepare = [=](const KnobSample& sample) {
     const auto fused = std::make_shared<FusedSample>(sample);
     return KnobBench{sample.target.color, [=](std::size_t s) {
@@ -118,7 +112,7 @@ Knob budget_knob() {
                kRepeats,
                {}};
   const std::vector<double> shares = {0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1};
-  for (const double share : shares) knob.settings.push_back({words(100 * share) + " %"});
+  for (const double share : shares) knob.settings.push_back({in_digits(100 * share) + " %"});
   knob.settings.push_back({"auto", true});
   knob.scores.push_back({"points", "", false});
   knob.prepare = [shares](const KnobSample& sample) {
@@ -157,7 +151,7 @@ Knob image_size_knob() {
                {}};
   const std::vector<double> shares = {0.25, 0.5, 0.75, 1, 1.5};
   for (const double share : shares) {
-    knob.settings.push_back({words(100 * share) + " %", share == 1});
+    knob.settings.push_back({in_digits(100 * share) + " %", share == 1});
   }
   knob.prepare = [shares](const KnobSample& sample) {
     const auto fused = std::make_shared<FusedSample>(sample);

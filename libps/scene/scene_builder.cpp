@@ -2,11 +2,11 @@
 #include "libps/scene/scene_builder.h"
 
 #include <algorithm>
-#include <chrono>
 #include <opencv2/imgproc.hpp>
 #include <utility>
 #include <vector>
 
+#include "libps/core/clock.h"
 #include "libps/core/error.h"
 #include "libps/geometry/point.h"
 #include "libps/scene/network_view.h"
@@ -17,10 +17,6 @@ namespace {
 /// A pixel is covered when a point is nearer than this to its centre: pixels that only a wide splat
 /// reaches are still to be filled.
 constexpr float kCoverRadius = 1.5f;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// An observed view at the size at which it was added, without its colour.
 struct Observed {
@@ -123,7 +119,7 @@ AddReport SceneBuilder::observe(const View& view, std::uint16_t number,
 
 /// Outpaints what is missing. Returns false when it was stopped.
 bool SceneBuilder::Impl::fill(SupportView& support, const Splat& seen) {
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = now();
   const outpaint::Outpainted filled =
       outpainter.run(to_network(seen.color), seen.missing, options.outpaint);
   if (filled.image.shape().pixels() == 0) return false;
@@ -138,10 +134,10 @@ bool SceneBuilder::Impl::fill(SupportView& support, const Splat& seen) {
 /// Depth of the picture, made to continue what is seen of the cloud.
 void SceneBuilder::Impl::align(SupportView& support, const Splat& seen, const Depth& cloud_depth) {
   SupportReport& report = support.report;
-  auto start = std::chrono::steady_clock::now();
+  auto start = now();
   const Depth guess = photo_depth(*networks.depth, support.view.color, lens, networks.depth_scale);
   report.depth_seconds = seconds_since(start);
-  start = std::chrono::steady_clock::now();
+  start = now();
   const Mask visible = seen.hit & (seen.missing == 0);
   const AlignedDepth aligned =
       align_depth(guess, cloud_depth, visible, seen.missing, options.alignment);
@@ -160,7 +156,7 @@ void SceneBuilder::Impl::align(SupportView& support, const Splat& seen, const De
 SupportView SceneBuilder::outpaint(const Pose& world_from_cam, std::uint16_t number) {
   Impl& impl = *impl_;
   impl.options.outpaint.view = number;
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = now();
   const Splat seen = splat(cloud(), impl.lens, world_from_cam, impl.options.splat);
   SplatOptions narrow = impl.options.splat;
   narrow.radius = kCoverRadius;

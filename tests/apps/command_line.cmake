@@ -10,6 +10,19 @@ app_test(version_is_printed [=[
   prints '^pixelsynth [0-9]+[.][0-9]+[.][0-9]+$']=])
 app_test(unknown_verb_is_wrong_usage "fails 2 'frobnicate' frobnicate")
 app_test(unknown_option_is_wrong_usage "fails 2 'nonsense.*see pixelsynth fuse --help' fuse $S/walk -o a.ply --nonsense")
+app_test(wrong_usage_points_to_the_help_of_the_verb_that_it_is_of [=[
+  fails 2 '^pixelsynth eval views: .*nonsense.*see pixelsynth eval views --help$' eval views $S/walk --nonsense
+  fails 2 '^pixelsynth eval depth: .*see pixelsynth eval depth --help$' eval depth
+  fails 2 '^pixelsynth eval ab: .*see pixelsynth eval ab --help$' eval ab $S/red $S/green -o a.html --names one
+  fails 2 '^pixelsynth weights info: .*see pixelsynth weights info --help$' weights info
+  fails 2 '^pixelsynth probe splat: .*see pixelsynth probe splat --help$' probe splat
+  fails 2 '^pixelsynth eval: .*see pixelsynth eval --help$' eval
+  fails 2 '^pixelsynth: .*see pixelsynth --help$' --nonsense]=])
+app_test(outputs_without_a_name_are_wrong_usage [=[
+  fails 2 'output: the folder.s name is empty; expected a folder' chart -o '' --knobs radius
+  fails 2 'output: the folder.s name is empty' stress -o ''
+  fails 2 'output: the name is empty; expected a name ending in .json' eval depth $S/walk -o ''
+  fails 2 'output: .*expected a name ending in .ply or .pcd' fuse $S/walk -o '']=])
 app_test(missing_output_is_wrong_usage "fails 2 'output is required' fuse $S/walk")
 app_test(missing_cloud_is_wrong_usage "fails 2 'cloud is required' render -o a.png")
 app_test(values_out_of_range_are_wrong_usage [=[
@@ -55,6 +68,15 @@ app_test(quiet_says_nothing [=[
   works -q fuse $S/walk -o a.ply --every 3
   is ! -s "$work/err"
   is ! -s "$work/out"]=])
+app_test(quiet_keeps_results_on_stdout [=[
+  works --help
+  prints 'Say nothing but errors on stderr; results on stdout stay'
+  works -q eval cloud $S/mixed.ply $S/seen.pcd
+  is ! -s "$work/err"
+  prints '^mixed.ply '
+  works -q weights info $S/depth.safetensors
+  is ! -s "$work/err"
+  prints '^all ']=])
 app_test(without_a_terminal_there_is_no_bar [=[
   works fuse $S/walk -o a.ply --every 3
   is "$(wc -l <"$work/err")" -eq 1]=])
@@ -76,9 +98,9 @@ app_test(missing_files_are_named [=[
   fails 1 'absent.safetensors' probe splat --in absent.safetensors --out a.safetensors]=])
 app_test(outputs_that_cannot_be_are_refused_before_the_work [=[
   fails 1 'no_folder' fuse $S/walk -o no_folder/a.ply
-  fails 1 'ply or .pcd' fuse $S/walk -o a.obj
+  fails 2 'ply or .pcd' fuse $S/walk -o a.obj
   fails 1 'no_folder' render $S/mixed.ply -o no_folder/a.mp4
-  fails 1 'mp4 or .png' render $S/mixed.ply -o a.avi
+  fails 2 'mp4 or .png' render $S/mixed.ply -o a.avi
   fails 1 'no_folder' scene $S/photo.png --depth $S/depth.png --no-outpaint -o no_folder/a
   mkdir b.report.json
   fails 1 'b.report.json: is a folder' fuse $S/walk -o b.ply

@@ -24,7 +24,24 @@ app_test(chart_writes_tables_pictures_and_a_page [=[
   done
   prints '^radius +seconds, s +PSNR where known, dB +change, dB'
   prints '^4 [*]'
-  says '^c: 2 knobs on 1 pairs of views in ']=])
+  says '^c: 2 knobs on 1 pair of views in ']=])
+app_test(chart_of_one_sample_has_no_intervals [=[
+  works chart -o c --views 1 --side 64 --knobs image-size
+  is "$(grep -Ec '^image-size,[^,]*,[01],[01],"[^"]*",[0-9.e+-]+,,,[0-9.]+,,,[0-9.e+-]+,,,1$' c/chart.csv)" -eq 5
+  is "$(grep -c '<small>' c/index.html)" -eq 0
+  is "$(grep -Ec '"(low|high)": null' c/chart.json)" -eq 30
+  ! grep -q 'intervals' c/image-size.svg || complain "the legend promises intervals"]=])
+app_test(chart_in_an_old_folder_leaves_nothing_of_other_knobs [=[
+  mkdir c
+  touch c/radius.png c/radius.svg c/radius.samples.csv c/width.svg c/radius.txt c/mine.png
+  works chart -o c --views 1 --side 64 --knobs image-size
+  is "$(LC_ALL=C ls c | xargs)" = "chart.csv chart.json chart.png image-size.png image-size.samples.csv image-size.svg index.html mine.png radius.txt"]=])
+app_test(chart_says_which_knobs_lpips_does_not_score [=[
+  works chart --help
+  prints 'lpips.*samples and selection alone'
+  works chart -o c --views 1 --side 64 --knobs radius,image-size --lpips $S/lpips.safetensors
+  says '^--lpips scores samples and selection alone, not radius, image-size$'
+  fails 1 'absent' chart -o d --views 1 --side 64 --knobs radius --lpips absent]=])
 app_test(chart_png_is_drawn_as_the_svg_says [=[
   needs ffmpeg
   works chart -o c --views 1 --side 64 --knobs radius
@@ -47,7 +64,10 @@ app_test(chart_scores_do_not_depend_on_threads_but_on_the_seed [=[
   is "$(scores a)" != "$(scores c)"]=])
 app_test(chart_takes_frames_and_refuses_those_without_pairs_or_depth [=[
   works chart rooms:5:8 -o c --views 2 --knobs image-size
-  says '^c: 1 knobs on 2 pairs'
+  says '^c: 1 knob on 2 pairs of views in '
+  is "$(grep -Ec '<small>[0-9.e+-]+ to [0-9.e+-]+</small>' c/index.html)" -ge 5
+  is "$(grep -o '<small>' c/index.html | wc -l)" -eq $((5 * 3))
+  grep -q 'with 95 % intervals' c/image-size.svg
   fails 1 'no two frames are a pair' chart rooms:5:1 -o d --knobs radius
   fails 1 'absent' chart absent -o d --knobs radius
   cp -r $S/estate e

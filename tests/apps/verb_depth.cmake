@@ -52,7 +52,7 @@ app_test(depth_refuses_what_is_no_network_or_no_photo [=[
   fails 1 'absent: ' depth $S/photo.png -o d.png --weights absent
   fails 1 'nothing.jpg' depth $S/nothing.jpg -o d.png --weights $S/depth.safetensors
   fails 1 'absent.png' depth absent.png -o d.png --weights $S/depth.safetensors
-  fails 1 'png or .pfm' depth $S/photo.png -o d.jpg --weights $S/depth.safetensors
+  fails 2 'png or .pfm' depth $S/photo.png -o d.jpg --weights $S/depth.safetensors
   fails 1 'no_folder' depth $S/photo.png -o no_folder/d.png --weights $S/depth.safetensors
   fails 2 'required' depth $S/photo.png
   fails 2 'fov' depth $S/photo.png -o d.png --fov 180]=])

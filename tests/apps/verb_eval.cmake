@@ -23,6 +23,13 @@ app_test(eval_depth_of_true_depths_by_a_constant_scene_is_right_for_the_constant
   grep -q '^constant,AbsRel raw,0,0,0,7$' e.csv
   grep -q '^constant,delta_1 raw,1,1,1,7$' e.csv
   ! grep -q '^ours,AbsRel,0,0,0,7$' e.csv || complain "a network by chance is right"]=])
+app_test(eval_depth_of_one_frame_has_no_intervals [=[
+  works eval depth $S/walk --weights $S/depth.safetensors --frames 3:3 -o e.json
+  says '^e.json: depth of 1 frame scored in '
+  grep -Eq '^ours,AbsRel,[0-9.e+-]+,,,1$' e.csv
+  ! grep -q '[.][.]' "$work/out" || complain "an interval is printed: $(cat $work/out)"
+  is "$(grep -Ec '"(low|high)": null' e.json)" -eq 60
+  is "$(grep -Ec '"value": [0-9]' e.json)" -eq 30]=])
 app_test(eval_depth_json_is_the_report_and_no_table [=[
   works --json eval depth $S/walk --weights $S/depth.safetensors
   prints '^  "methods": '
@@ -62,7 +69,8 @@ app_test(eval_depth_leaves_frames_without_depth_out_and_refuses_data_without_any
 app_test(eval_depth_refuses_what_is_no_data_and_what_cannot_be_written [=[
   fails 1 'absent: is not there' eval depth absent --weights $S/depth.safetensors
   fails 1 'no_depth: is of no known layout' eval depth $S/no_depth --weights $S/depth.safetensors
-  fails 1 'ending in .json' eval depth $S/walk --weights $S/depth.safetensors -o e.txt
+  fails 2 'e.txt: .*ending in .json' eval depth $S/walk --weights $S/depth.safetensors -o e.txt
+  fails 2 'ev1.csv: .*ending in .json' eval cloud $S/mixed.ply $S/mixed.ply -o ev1.csv
   fails 1 'no_folder' eval depth $S/walk --weights $S/depth.safetensors -o no_folder/e.json
   fails 2 'required' eval depth
   fails 2 '' eval]=])
@@ -122,6 +130,10 @@ app_test(eval_ab_pairs_equal_names_of_equal_sizes [=[
   cp $S/photo.png a/other.png
   works eval ab a $S/green -o page.html
   says 'warning: 3 images are in one folder alone'
+  works eval ab $S/red $S/green -o one.html --pairs 1 --sentinels 0
+  says '^one.html: 2 questions about 1 pair in '
+  rm one.html
+  works eval ab a $S/green -o page.html
   says 'about 4 pairs'
   cp $S/photo.png a/p2.png
   fails 1 'p2.png: is 64x48 pixels.*96x64; expected one size' eval ab a $S/green -o b.html
@@ -130,7 +142,7 @@ app_test(eval_ab_pairs_equal_names_of_equal_sizes [=[
   fails 1 'no image has the name' eval ab $S/red $S/tum -o b.html
   fails 1 'has no image p0' eval ab $S/red $S/green --inputs $S/tum -o b.html
   fails 1 'absent' eval ab absent $S/green -o b.html
-  fails 1 'ending in .html' eval ab $S/red $S/green -o b.txt
+  fails 2 'ending in .html' eval ab $S/red $S/green -o b.txt
   fails 2 'names' eval ab $S/red $S/green -o b.html --names one
   fails 2 'sentinels' eval ab $S/red $S/green -o b.html --sentinels -1]=])
 

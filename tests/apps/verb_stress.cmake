@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 app_test(stress_writes_tables_curves_and_pictures [=[
+  mkdir s
+  touch s/depth-noise.png s/depth-noise-after.png s/rotation.svg s/mine.png
   works stress -o s --axes splat-narrow
+  says '^s: 1 axis put under stress in '
+  is "$(LC_ALL=C ls s | xargs)" = "mine.png splat-narrow-before.png splat-narrow.png splat-narrow.svg stress.csv stress.json stress.md"
   writes s/stress.json s/stress.csv s/stress.md s/splat-narrow.png s/splat-narrow.svg s/splat-narrow-before.png
   prints '^splat-narrow +times +ours '
   is "$(grep -c '^splat-narrow,' s/stress.csv)" -eq 24

@@ -18,7 +18,8 @@ app_test(train_options_are_checked [=[
   fails 2 'supervision' train vqvae --data d -o r --supervision poses
   fails 2 'curriculum' train refine --data d -o r --codes c --curriculum -1
   fails 2 'curriculum' train classifier --data d -o r --curriculum 5
-  fails 2 'steps' train all --data d -o r --steps 5]=])
+  fails 2 'steps' train all --data d -o r --steps 5
+  fails 2 'keep-codes requires --init; see pixelsynth train vqvae --help' train vqvae --data d -o r --keep-codes]=])
 app_test(train_names_what_is_missing [=[
   fails 1 'd/train: there are no examples' train depth --data d -o r
   fails 1 'absent' train data -o absent/d --rgbd $S/absent

@@ -84,7 +84,7 @@ app_test(weights_that_are_unsound_fail_with_one_line [=[
   fails 1 'nothing.jpg' weights info $S/nothing.jpg
   fails 1 'broken' weights info $S/broken.safetensors
   fails 1 "called 'vqvae.a.weight'" weights info $S/twice.safetensors
-  fails 1 'safetensors' weights convert $S/weights.safetensors -o a.pth
+  fails 2 'a.pth: .*safetensors' weights convert $S/weights.safetensors -o a.pth
   fails 1 'no_folder' weights convert $S/weights.safetensors -o no_folder/a.safetensors
   fails 2 'type' weights convert $S/weights.safetensors -o a.safetensors --type f64
   fails 2 'required' weights convert $S/weights.safetensors]=])

@@ -95,16 +95,18 @@ TEST(CloudIntervals, of_an_empty_cloud_are_nothing) {
     const CloudIntervals none = cloud_intervals(a, b, {0.1});
     ASSERT_EQ(none.scores.size(), 1u);
     EXPECT_EQ(none.scores[0].f_score.value, 0);
-    EXPECT_EQ(none.scores[0].f_score.high, 0);
+    EXPECT_TRUE(std::isnan(none.scores[0].f_score.high));
     EXPECT_TRUE(std::isnan(none.chamfer.value));
   }
 }
 
-TEST(CloudIntervals, of_one_point_and_itself_are_all) {
+TEST(CloudIntervals, of_one_block_are_not_known) {
   const Cloud one = random_cloud(1, 1);
   const CloudIntervals found = cloud_intervals(one, one, {0.1});
-  EXPECT_EQ(found.scores[0].f_score.low, 1);
-  EXPECT_EQ(found.chamfer.high, 0);
+  EXPECT_EQ(found.scores[0].f_score.value, 1);
+  EXPECT_TRUE(std::isnan(found.scores[0].f_score.low));
+  EXPECT_EQ(found.chamfer.value, 0);
+  EXPECT_TRUE(std::isnan(found.chamfer.high));
 }
 
 TEST(CloudIntervals, do_not_depend_on_threads_or_on_the_order_of_points) {

@@ -92,13 +92,17 @@ TEST(Bootstrap, leaves_nan_out_and_says_of_how_many_it_is) {
   EXPECT_EQ(interval.high, 3);
 }
 
-TEST(Bootstrap, of_nothing_is_nan_of_one_its_value_and_of_infinite_values_infinite) {
+TEST(Bootstrap, of_nothing_is_nan_of_one_without_bounds_and_of_infinite_values_infinite) {
   EXPECT_TRUE(std::isnan(bootstrap_mean({}).value));
   EXPECT_TRUE(std::isnan(bootstrap_mean({kNan}).low));
   EXPECT_EQ(bootstrap_mean({}).samples, 0u);
   const Interval one = bootstrap_mean({5});
-  EXPECT_EQ(one.low, 5);
-  EXPECT_EQ(one.high, 5);
+  EXPECT_EQ(one.value, 5);
+  EXPECT_EQ(one.samples, 1u);
+  EXPECT_TRUE(std::isnan(one.low) && std::isnan(one.high));
+  const Interval left = bootstrap_mean({5, kNan}, {1, 2});
+  EXPECT_EQ(left.value, 5);
+  EXPECT_TRUE(std::isnan(left.low) && std::isnan(left.high));
   EXPECT_EQ(bootstrap_mean({kInfinity, kInfinity}).low, kInfinity);
 }
 

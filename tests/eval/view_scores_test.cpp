@@ -53,6 +53,13 @@ TEST(ViewScores, an_empty_mask_has_no_score) {
   EXPECT_TRUE(std::isnan(view_scores(noise(2), truth, all).psnr_visible));
 }
 
+TEST(ViewScores, without_masks_neither_part_has_a_score) {
+  const ViewScores scores = view_scores(noise(2), noise(1), {});
+  EXPECT_TRUE(std::isnan(scores.psnr_visible));
+  EXPECT_TRUE(std::isnan(scores.psnr_invisible));
+  EXPECT_EQ(scores.psnr, psnr(noise(2), noise(1)));
+}
+
 TEST(ViewScores, refuse_pictures_of_other_sizes) {
   EXPECT_THROW(view_scores(Image(32, 41), noise(1), halves()), Error);
   EXPECT_THROW(view_scores(Image(16, 20), Image(16, 20), halves()), Error);

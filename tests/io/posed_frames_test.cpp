@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/posed_frames.h"
 
+#include <chrono>
 #include <cmath>
 #include <set>
 
@@ -53,9 +54,9 @@ TEST(PosedFrames, of_an_rgbd_folder) {
     const PosedFrame& frame = frames.frames[static_cast<std::size_t>(i - 1)];
     EXPECT_EQ(frame.name, std::to_string(i));
     EXPECT_EQ(frame.stamp, i);
-    EXPECT_EQ(frame.world_from_cam.translation().z(), i);
-    EXPECT_EQ(frame.lens.fx, 10);
+    EXPECT_EQ(frames.pose(static_cast<std::size_t>(i - 1)).translation().z(), i);
     const View view = frames.load(static_cast<std::size_t>(i - 1));
+    EXPECT_EQ(view.intrinsics.fx, 10);
     expect_frame(view, i, static_cast<float>(i));
     EXPECT_EQ(view.world_from_cam.translation().z(), i);
   }
@@ -116,9 +117,8 @@ TEST(PosedFrames, of_tum_go_together_by_time) {
   EXPECT_TRUE(has(frames.assumed[0], "525 pixels of 640x480"));
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(frames.frames[i].stamp, static_cast<double>(i + 1));
-    EXPECT_EQ(frames.frames[i].lens.fx, 525);
     // Poses stand at 0.994, 1.004, ...: the nearest is 4 ms later.
-    EXPECT_NEAR(frames.frames[i].world_from_cam.translation().x(), i + 1.004, 1e-6);
+    EXPECT_NEAR(frames.pose(i).translation().x(), i + 1.004, 1e-6);
     const View view = frames.load(i);
     expect_frame(view, static_cast<int>(i) + 1, 0.5f * static_cast<float>(i + 1));
     EXPECT_EQ(view.intrinsics.fx, 52.5);
@@ -186,7 +186,7 @@ TEST(PosedFrames, of_seven_scenes) {
   EXPECT_EQ(frames.skipped, 1u);
   EXPECT_EQ(frames.frames[1].name, "frame-000005");
   EXPECT_EQ(frames.frames[1].stamp, 5);
-  EXPECT_EQ(frames.frames[1].world_from_cam.translation(), Eigen::Vector3d(0.5, -2, 3));
+  EXPECT_EQ(frames.pose(1).translation(), Eigen::Vector3d(0.5, -2, 3));
   EXPECT_TRUE(has(frames.assumed.at(0), "585 pixels of 640x480"));
   const View view = frames.load(1);
   expect_frame(view, 5, 5);
@@ -250,7 +250,7 @@ TEST(PosedFrames, of_realestate10k_have_no_depth_and_lenses_in_pixels) {
       EXPECT_EQ(frames.layout, "RealEstate10K");
       ASSERT_EQ(frames.frames.size(), 2u);
       EXPECT_EQ(frames.frames[1].name, "2000");
-      EXPECT_EQ(frames.frames[1].world_from_cam.translation().x(), 1);
+      EXPECT_EQ(frames.pose(1).translation().x(), 1);
       const View view = frames.load(1);
       EXPECT_TRUE(view.depth.empty());
       EXPECT_NEAR(view.color(0, 0)[0], 0.1, 0.003);
@@ -298,8 +298,7 @@ TEST(PosedFrames, of_rooms_are_exact_views_four_to_a_world) {
     const View view = frames.load(i);
     check(view, "room");
     EXPECT_EQ(view.color.size(), cv::Size(256, 256));
-    EXPECT_EQ(view.world_from_cam.matrix(), frame.world_from_cam.matrix());
-    EXPECT_EQ(view.intrinsics.fx, frame.lens.fx);
+    EXPECT_EQ(view.world_from_cam.matrix(), frames.pose(i).matrix());
   }
   // The poses go with the depths: hardly a surface is where the other view looks through.
   const View first = frames.load(0), second = frames.load(1);
@@ -311,14 +310,25 @@ TEST(PosedFrames, of_rooms_are_exact_views_four_to_a_world) {
 
 TEST(PosedFrames, of_rooms_do_not_depend_on_threads_but_on_the_seed) {
   const auto place = [](const std::string& data) {
-    return open_posed_frames(data).frames.back().world_from_cam.matrix();
+    return open_posed_frames(data).pose(8).matrix();
   };
-  set_threads(1);
   const Eigen::Matrix4d one = place("rooms:7:9");
+  std::vector<Eigen::Matrix4d> many(6);
   set_threads(3);
-  EXPECT_EQ(place("rooms:7:9"), one);
+  parallel_for(many.size(), [&](std::size_t i) { many[i] = place("rooms:7:9"); });
   set_threads(0);
+  for (const Eigen::Matrix4d& again : many) EXPECT_EQ(again, one);
   EXPECT_NE(place("rooms:8:9"), one);
+}
+
+TEST(PosedFrames, of_rooms_are_built_when_they_are_asked_for) {
+  const auto start = std::chrono::steady_clock::now();
+  const PosedFrames frames = open_posed_frames("rooms:7:200000");
+  EXPECT_EQ(frames.frames.size(), 200000u);
+  EXPECT_EQ(frames.frames.back().world, 49999);
+  EXPECT_EQ(frames.load(199999).world_from_cam.matrix(), frames.pose(199999).matrix());
+  // Fifty thousand rooms take minutes.
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 
 TEST(PosedFrames, of_nothing_known_throw) {

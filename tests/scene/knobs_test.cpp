@@ -161,7 +161,8 @@ TEST(KnobSamples, of_frames_take_the_nearest_others_of_the_world_but_for_neighbo
     poses.push_back(pose);
     worlds.push_back(i / 20);
   }
-  const auto sets = choose_frame_sets(poses, worlds, 6, 3, 1);
+  const auto pose_of = [&](std::size_t i) { return poses[i]; };
+  const auto sets = choose_frame_sets(worlds, pose_of, 6, 3, 1);
   ASSERT_EQ(sets.size(), 6u);
   for (const FrameSet& set : sets) {
     EXPECT_EQ(set.others.size(), 4u);

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+
+namespace ps {
+
+/// A moment, on a clock that is never put back.
+using Instant = std::chrono::steady_clock::time_point;
+
+inline Instant now() { return std::chrono::steady_clock::now(); }
+
+inline double seconds_since(Instant start) {
+  return std::chrono::duration<double>(now() - start).count();
+}
+
+}  // namespace ps
