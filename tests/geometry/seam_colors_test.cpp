@@ -16,7 +16,7 @@ constexpr int kSide = 160, kSeam = 60;
 
 /// A wavy picture, of which what is right of a column is missing.
 struct Case {
-  Image seen{kSide, kSide};
+  Image seen = Image(kSide, kSide);
   Mask missing = Mask::zeros(kSide, kSide);
 
   Case() {
@@ -95,7 +95,7 @@ TEST(SeamColors, are_the_same_bytes_for_any_number_of_threads) {
 
 TEST(SeamColors, errors_say_what_is_wrong) {
   const Case c;
-  EXPECT_THROW(continue_colors({}, {}, {}), Error);
+  EXPECT_THROW(continue_colors(Image(), Image(), Mask()), Error);
   EXPECT_THROW(continue_colors(c.seen, c.seen, Mask::zeros(3, 3)), Error);
   EXPECT_THROW(continue_colors(c.seen, c.seen, c.missing, {0, 3, 0.2}), Error);
   EXPECT_THROW(continue_colors(c.seen, c.seen, c.missing, {8, 0, 0.2}), Error);
