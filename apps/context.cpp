@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/context.h"
 
+#include <unistd.h>
+
 #include <cctype>
 #include <cstdio>
 
@@ -18,9 +20,11 @@ void Context::detail(const std::string& line) const {
 void Context::warn(const std::string& line) const { say("warning: " + line); }
 
 void Context::flush() const {
-  for (const std::string& line : waiting_) std::fprintf(stderr, "%s\n", line.c_str());
+  for (const std::string& line : waiting_) print_error(line + "\n");
   waiting_.clear();
 }
+
+void print_error(const std::string& text) { dprintf(STDERR_FILENO, "%s", text.c_str()); }
 
 std::string one_line(const std::string& text) {
   std::string line;

@@ -30,4 +30,8 @@ struct Context {
 /// @return the text on one line: runs of line breaks and blanks become one blank
 std::string one_line(const std::string& text);
 
+/// @brief Writes to the process's standard error, past the stream that decoders print to, which
+/// may be hushed in another thread (io/hush.h).
+void print_error(const std::string& text);
+
 }  // namespace ps::apps

@@ -22,12 +22,12 @@ namespace {
 /// A lock on a folder, which ends with the process that holds it, wherever that runs.
 struct Lock {
   int descriptor = -1;
-  bool taken = false;  ///< another holds it
+  bool taken = false;  ///< another holds it, or may
 
   explicit Lock(const fs::path& folder)
       : descriptor(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC)) {
     if (descriptor < 0 || flock(descriptor, LOCK_EX | LOCK_NB) == 0) return;
-    taken = errno == EWOULDBLOCK;
+    taken = true;  // or the file system has no locks: then nobody can tell
     close(descriptor);
     descriptor = -1;
   }
@@ -44,8 +44,9 @@ std::optional<pid_t> process_of(const std::string& name, const std::string& pref
   return exact ? std::optional<pid_t>(process) : std::nullopt;
 }
 
-/// A process of another PID namespace is told by its lock; where a file system has no locks, by its
-/// number alone. Our own number is of an earlier process, unless that lock is held.
+/// A process of another PID namespace or machine is told by its lock; where a file system has no
+/// locks, everything is taken to be in use. Our own number is of an earlier process, unless that
+/// lock is held.
 bool has_ended(pid_t process, const fs::path& folder) {
   const bool lives = process != getpid() && (kill(process, 0) == 0 || errno != ESRCH);
   if (lives) return false;

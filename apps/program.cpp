@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/program.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -55,7 +57,7 @@ int report_usage(const CLI::App& program, const CLI::ParseError& error) {
 }
 
 int fail(const char* message) noexcept {
-  std::fprintf(stderr, "pixelsynth: %s\n", message);
+  dprintf(STDERR_FILENO, "pixelsynth: %s\n", message);
   return 1;
 }
 

@@ -14,7 +14,8 @@
 namespace ps::apps {
 namespace {
 
-constexpr double kBetweenDraws = 0.1;  ///< seconds
+constexpr const char* kClear = "\r\033[K";  ///< an empty line in place of the bar
+constexpr double kBetweenDraws = 0.1;       ///< seconds
 
 int terminal_columns() {
   winsize size = {};
@@ -62,13 +63,13 @@ Progress::Progress(const Context& context, std::string what, std::size_t total)
 }
 
 Progress::~Progress() {
-  if (drawn_) std::fputs("\r\033[K", stderr);
+  if (drawn_) print_error(kClear);
 }
 
 void Progress::update(std::size_t done) {
   throw_if_interrupted();
   if (done > 0 && context_.waits()) {
-    if (drawn_) std::fputs("\r\033[K", stderr);
+    if (drawn_) print_error(kClear);
     context_.flush();
   }
   if (!visible_ || (drawn_ && done < total_ && seconds_since(last_) < kBetweenDraws)) return;
@@ -76,8 +77,7 @@ void Progress::update(std::size_t done) {
   drawn_ = true;
   const std::string line =
       progress_line(what_, done, total_, seconds_since(start_), terminal_columns());
-  std::fprintf(stderr, "\r%s\033[K", line.c_str());
-  std::fflush(stderr);
+  print_error("\r" + line + "\033[K");
 }
 
 }  // namespace ps::apps

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "apps/interrupt.h"
 #include "apps/lift_arguments.h"
@@ -61,11 +62,12 @@ AddReport SceneMaker::observe_all(SceneCloud& plain) {
   std::vector<Pose> poses;
   const bool frames = input_.load_depth != nullptr;
   std::size_t without_depth = input_.without_depth;
-  Progress progress(context_, "frames", input_.count);
+  std::optional<Progress> progress;
+  if (frames) progress.emplace(context_, "frames", input_.count);
   for (std::size_t i = 0; i < input_.count; ++i) {
     throw_if_interrupted();
     const View view = i == 0 ? input_.first : input_.load(i);
-    if (frames) progress.update(i + 1);
+    if (progress) progress->update(i + 1);
     if (view.depth.empty()) {
       ++without_depth;
       continue;

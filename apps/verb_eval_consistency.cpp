@@ -86,6 +86,7 @@ ScoreTable measure(const EvalConsistencyArguments& a, const ChosenFrames& frames
                    const Context& context) {
   ScoreTable table(columns());
   SceneOptions options = a.scene.scene(context);
+  options.cloud.lift.estimated = a.estimate_depth;
   options.outpaint.progress = unless_interrupted;
   PlanOptions plan_options = a.scene.plan();
   plan_options.views_per_direction = 2;

@@ -100,6 +100,7 @@ class ViewsRun {
     if (const auto features = perceptual.features()) frechet_.emplace(*features);
     ViewMethodOptions options;
     options.scene = a_.scene.scene(context);
+    options.scene.cloud.lift.estimated = a_.estimate_depth;
     options.scene.outpaint.progress = unless_interrupted;
     options.renderer.seed = context.seed;
     for (const std::string& name : a_.methods) {

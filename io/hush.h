@@ -5,7 +5,8 @@ namespace ps {
 
 /// @brief For programs whose failures are to be one line: from now on, what the process prints
 /// through `stderr` or `std::cerr` while an image is decoded is dropped. OpenCV, libjpeg and libpng
-/// print there, and what they know of is thrown as ps::Error anyway. Without this call nothing is
+/// print there; what cannot be decoded is thrown as ps::Error. What writes to the file descriptor is
+/// not held back, as the program's own messages do, from any thread. Without this call nothing is
 /// dropped.
 void hush_decoders();
 

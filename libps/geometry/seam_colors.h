@@ -8,7 +8,8 @@ namespace ps {
 struct SeamColorOptions {
   double decay = 128;  ///< pixels over which a correction fades away from the seam, above 0
   int reach = 3;       ///< pixels to each side of the seam that are compared, 1 or more
-  double edge = 0.5;   ///< a difference of so much is half taken for an edge, which stays; above 0
+  double edge = 0.5;   ///< a difference (of RGB, Euclidean) of so much is half taken for an edge,
+                       ///< which stays; above 0
 };
 
 /// @brief Makes painted colours continue the seen ones: what the two differ by on average at the

@@ -135,7 +135,7 @@ std::vector<std::int32_t> Outpainter::encode(View& view, const nn::TensorView& p
   view.progress.at(0);
   const Clock clock(view.result.report.encode_seconds);
   std::vector<std::int32_t> codes(networks_.autoencoder->grid(projection.shape).pixels());
-  if (view.options.continue_colors) {
+  if (view.options.encode_nearest) {
     const nn::Tensor whole = continued(projection, background);
     networks_.autoencoder->encode(whole, codes.data(), workspace_);
   } else {
@@ -278,7 +278,8 @@ Outpainted Outpainter::outpaint(const nn::TensorView& projection, const cv::Mat1
   report.cells = order.size();
   report.missing_cells = static_cast<std::size_t>(
       std::count(order.missing.begin(), order.missing.end(), std::uint8_t{1}));
-  const int samples = report.missing_cells > 0 ? options.samples : 1;  // else all are the same
+  const bool differ = report.missing_cells > 0 && options.temperature > 0;
+  const int samples = differ ? options.samples : 1;
   const Work work(options, samples, report.missing_cells, networks_.scorers.size(),
                   background.size().area(), report.changed.area());
   View view{options, result, pictures, work, Progress(options.progress, work.whole), samples};

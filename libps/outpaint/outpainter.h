@@ -35,7 +35,7 @@ struct OutpaintOptions {
   Screen screen = Screen::unrefined;
   /// Encode the projection with the nearest colours where it is missing, so that the codes of cells
   /// that are seen in part continue what is seen. false, as published: missing pixels are grey.
-  bool continue_colors = true;
+  bool encode_nearest = true;
   /// Decode and refine for each completion only what it can change; false: whole pictures.
   bool region = true;
   /// Told what share of the view is done, from 0 to 1 and never falling, in all stages: one call at

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <cstring>
 
-#if defined(__x86_64__) && defined(__GNUC__)
+#if defined(__x86_64__) && defined(__GNUC__) && defined(__GLIBC__)
 /// Built for several vector widths, of which the processor picks one; all give the same digits.
 #define PS_ANY_WIDTH __attribute__((target_clones("avx2", "default")))
 #else

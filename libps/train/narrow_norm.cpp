@@ -23,12 +23,12 @@ constexpr std::int64_t kChunk = 1024;  ///< pixels whose sums are one thread's
 Tensor channels_last(const Tensor& x) { return x.contiguous(torch::MemoryFormat::ChannelsLast); }
 const Narrow* bits_of(const Tensor& x) { return static_cast<const Narrow*>(x.data_ptr()); }
 
-/// Adds up x and its squares over pixels of c channels.
-PS_ANY_WIDTH void add_squares(const Narrow* x, std::int64_t pixels, std::int64_t c, float* sum,
-                              float* squares) {
+/// Adds up x less a pixel's, and its squares, over pixels of c channels.
+PS_ANY_WIDTH void add_squares(const Narrow* x, const Narrow* pivot, std::int64_t pixels,
+                              std::int64_t c, float* sum, float* squares) {
   for (std::int64_t p = 0; p < pixels; ++p, x += c) {
     for (std::int64_t i = 0; i < c; ++i) {
-      const float value = widened(x[i]);
+      const float value = widened(x[i]) - widened(pivot[i]);
       sum[i] += value;
       squares[i] += value * value;
     }
@@ -101,11 +101,13 @@ class NarrowNorm : public torch::autograd::Function<NarrowNorm> {
     const std::int64_t c = x.size(1), pixels = x.numel() / c;
     const Narrow* const from = bits_of(x);
     const auto sums = two_sums(pixels, c, [&](std::int64_t p, std::int64_t n, float* a, float* b) {
-      add_squares(from + p * c, n, c, a, b);
+      add_squares(from + p * c, from, n, c, a, b);
     });
     const auto moments = torch::tensor(sums, torch::kFloat64).view({2, c}) / pixels;
-    const Tensor mean = moments[0];
-    const Tensor var = (moments[1] - mean.square()).clamp_min(0);
+    // Squares of differences from the first pixel: of large means little would be left.
+    const Tensor pivot = x.permute({0, 2, 3, 1}).reshape({pixels, c})[0].to(torch::kFloat64);
+    const Tensor mean = moments[0] + pivot;
+    const Tensor var = (moments[1] - moments[0].square()).clamp_min(0);
     const double unbiased = static_cast<double>(pixels) / std::max<double>(1, pixels - 1.);
     move(running_mean, mean.to(torch::kFloat32));
     move(running_var, (var * unbiased).to(torch::kFloat32));

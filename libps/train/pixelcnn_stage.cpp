@@ -5,6 +5,7 @@
 
 #include "libps/core/error.h"
 #include "libps/models/codebook_mark.h"
+#include "libps/outpaint/nearest_seen.h"
 #include "libps/train/autoencoder.h"
 #include "libps/train/completions.h"
 #include "libps/train/pixel_cnn.h"
@@ -83,9 +84,8 @@ class PixelCnnStage : public Stage {
           .gather(1, flat.unsqueeze(1))
           .squeeze(1);
     };
-    // What the program has: codes of the projection, whose cells at the border are partly empty.
     const Tensor projected =
-        torch::where(batch.unseen.view_as(codes) > 0, codes, codes_of(batch.splat));
+        torch::where(batch.unseen.view_as(codes) > 0, codes, codes_of(continued(batch)));
     const Tensor& counts = net_.parameters["code_counts"];
     const Tensor unigram = (counts / counts.sum()).index_select(0, flat);
     const Tensor copied =
@@ -108,7 +108,7 @@ class PixelCnnStage : public Stage {
     const auto decoded = [&](const Tensor& codes) {
       return autoencoder_.decode(autoencoder_.embed(codes)).clamp(-1, 1);
     };
-    const Tensor image = decoded(codes_of(batch.color)), seen = codes_of(batch.splat);
+    const Tensor image = decoded(codes_of(batch.color)), seen = codes_of(continued(batch));
     std::vector<std::vector<Tensor>> rows;
     for (std::int64_t i = 0; i < image.size(0); ++i) {
       rows.push_back({batch.color[i], batch.splat[i], image[i]});
@@ -142,6 +142,27 @@ class PixelCnnStage : public Stage {
   Tensor codes_of(const Tensor& picture) const {
     const torch::NoGradGuard guard;
     return autoencoder_.nearest(autoencoder_.encode(picture));
+  }
+
+  /// What the program encodes: the projection, with the nearest colours where it is missing.
+  static Tensor continued(const Batch& batch) {
+    const Tensor missing = batch.missing.cpu().to(torch::kUInt8).contiguous();
+    const auto h = missing.size(2), w = missing.size(3);
+    std::vector<Tensor> pictures;
+    for (std::int64_t i = 0; i < missing.size(0); ++i) {
+      const cv::Mat1b mask(static_cast<int>(h), static_cast<int>(w),
+                           missing[i].data_ptr<std::uint8_t>());
+      const cv::Mat1i nearest = outpaint::nearest_seen(mask);
+      const Tensor from =
+          nearest.empty()
+              ? torch::arange(h * w)
+              : torch::from_blob(nearest.data, {h * w}, torch::kInt32).to(torch::kInt64);
+      pictures.push_back(batch.splat[i]
+                             .flatten(1)
+                             .index_select(1, from.to(batch.splat.device()))
+                             .view({-1, h, w}));
+    }
+    return torch::stack(pictures).contiguous(torch::MemoryFormat::ChannelsLast);
   }
 
   /// The code of the known cell that is nearest to each cell: [n, cells].

@@ -93,7 +93,7 @@ app_test(scene_takes_one_file_of_all_networks_as_published [=[
   works $args -o t --select discriminator --weights all.safetensors
   cmp s/scene.ply t/scene.ply
   works depth $S/photo.png --fov 60 -o d.pfm --weights all.safetensors --json
-  fails 1 'published.safetensors.*classifier.*--select discriminator' -q $args -o u --weights $S/published.safetensors]=])
+  fails 1 'published.safetensors.*classifier.*--select discriminator' -q $args -o u --select both --weights $S/published.safetensors]=])
 app_test(scene_through_a_long_lens_keeps_its_pixels [=[
   for fov in 2 5 10; do
     works scene $S/photo.png --fov $fov --no-outpaint -o s

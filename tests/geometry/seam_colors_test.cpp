@@ -68,7 +68,7 @@ TEST(SeamColors, an_edge_at_the_seam_stays_one) {
 TEST(SeamColors, what_is_seen_stays_and_values_stay_colours) {
   const Case c;
   const Image out =
-      continue_colors(c.seen, c.painted({0.35f, -0.35f, 0.0f}), c.missing, {64, 5, 10});
+      continue_colors(c.seen, c.painted({0.35f, -0.35f, 0.0f}), c.missing, {8, 5, 10});
   const cv::Rect left(0, 0, kSeam, kSide);
   EXPECT_EQ(cv::norm(out(left), c.painted({0.35f, -0.35f, 0})(left), cv::NORM_INF), 0);
   EXPECT_TRUE(

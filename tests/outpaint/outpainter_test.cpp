@@ -43,7 +43,7 @@ TEST_F(OutpainterOfRandomWeights, cells_seen_in_part_continue_what_is_seen_unles
     return known(outpainter({}).run(projection_, background_, options).codes);
   };
   EXPECT_EQ(used(), known(known_codes()));
-  options.continue_colors = false;
+  options.encode_nearest = false;
   EXPECT_EQ(used(), known(codes_of(projection_)));
   EXPECT_NE(known(known_codes()), known(codes_of(projection_)));
 }
