@@ -258,7 +258,8 @@ SceneInput read_scene_input(const SceneInputArguments& a, const DepthModel* mode
     return read_frames(a, context);
   }
   if (!a.frames.empty() || a.every != 1) {
-    throw CLI::ValidationError("--frames", "goes with a folder of frames, not with a photo");
+    throw CLI::ValidationError(a.frames.empty() ? "--every" : "--frames",
+                               "goes with a folder of frames, not with a photo");
   }
   SceneInput input;
   const View photo = read_one(a, a.photo, a.depth, model, context, input.report);

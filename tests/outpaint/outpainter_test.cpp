@@ -48,6 +48,15 @@ TEST_F(OutpainterOfRandomWeights, cells_seen_in_part_continue_what_is_seen_unles
   EXPECT_NE(known(known_codes()), known(codes_of(projection_)));
 }
 
+TEST_F(OutpainterOfRandomWeights, completions_that_are_all_alike_are_drawn_once) {
+  OutpaintOptions options;
+  options.temperature = 0;
+  options.samples = 5;
+  const Outpainted result = outpainter({recorder()}).run(projection_, background_, options);
+  EXPECT_EQ(result.report.drawn, 1);
+  EXPECT_EQ(seen_.size(), 1u);
+}
+
 TEST_F(OutpainterOfRandomWeights, nothing_missing_costs_nothing) {
   background_ = 0;
   const Outpainted result = outpainter({recorder()}).run(projection_, background_, {});
