@@ -33,7 +33,6 @@ fs::path rgb_weights(const std::string& weights) {
 
 std::vector<std::string> default_methods() {
   std::vector<std::string> names = view_method_names();
-  names.erase(std::find(names.begin(), names.end(), "by-likelihood"));  // which ours is
   if (!find_default_weights(kRgb)) names.erase(std::find(names.begin(), names.end(), "rgb"));
   return names;
 }
@@ -66,7 +65,7 @@ MethodNetworks MethodModels::networks() const {
     return networks;
   }
   networks.scene = scene_->networks();
-  networks.scene.outpaint.scorers.clear();  // as `scene` without --select: the likeliest
+  networks.scene.outpaint.scorers.clear();  // as `scene` without --select
   networks.scorers = scene_->scorers();
   networks.rgb.autoencoder = rgb_autoencoder_.get();
   networks.rgb.pixel_cnn = rgb_pixel_cnn_.get();

@@ -12,8 +12,7 @@
 
 namespace ps::apps {
 
-/// @return view_method_names() without by-likelihood, which `ours` is here, and without those whose
-/// weights do not come with the program
+/// @return view_method_names() without those whose weights do not come with the program
 std::vector<std::string> default_methods();
 
 /// @brief The networks that view methods need (libps/scene/view_methods.h), from weights files.

@@ -38,7 +38,7 @@ void SceneArguments::add_sampling_options(CLI::App& verb) {
       ->check(in_range(0, 2));
   verb.add_option(
           "--refine-best", refine_best,
-          "With other judges than likelihood: refine only so many completions, the best by a "
+          "With judges that look at pictures: refine only so many completions, the best by a "
           "look at the unrefined; 0 = all")
       ->type_name("N")
       ->check(whole_in(0, 1000));
@@ -51,10 +51,11 @@ void SceneArguments::add_sampling_options(CLI::App& verb) {
 
 void SceneArguments::add_outpaint_options(CLI::App& verb) {
   add_sampling_options(verb);
-  verb.add_option("--select", select,
-                  "What keeps the best completion: likelihood = the PixelCNN's own, which refines "
-                  "that one alone; discriminator and classifier look at all refined; both = the "
-                  "sum of their ranks, as published")
+  verb.add_option(
+          "--select", select,
+          "What keeps the best completion: consensus = that which agrees most with all drawn; "
+          "likelihood = the PixelCNN's likeliest; both refine that one alone. Others look at "
+          "all refined: discriminator, classifier, or both (the sum of ranks, as published)")
       ->type_name("NAME")
       ->check(CLI::IsMember(selection_names()));
 }
@@ -179,6 +180,7 @@ SceneOptions SceneArguments::scene(const Context& context) const {
   o.temperature = temperature;
   o.refine_best = refine_best;
   o.seed = context.seed;
+  if (select == "likelihood") o.keep = outpaint::OutpaintOptions::Keep::likeliest;
   return options;
 }
 

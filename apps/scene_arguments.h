@@ -31,7 +31,7 @@ struct SceneArguments {
   std::string samples = "50";
   double temperature = 0.5;
   int refine_best = 0;
-  std::string select = "likelihood";
+  std::string select = "consensus";
 
   std::string budget;  ///< none, auto, points=N or psnr=DB; empty = auto where it outpaints
   int view_size = 1024;

@@ -24,8 +24,8 @@ std::string depth_weights(const std::string& weights) {
 }
 
 const std::vector<std::string>& selection_names() {
-  static const std::vector<std::string> names = {"likelihood", "discriminator", "classifier",
-                                                 "both"};
+  static const std::vector<std::string> names = {"consensus", "likelihood", "discriminator",
+                                                 "classifier", "both"};
   return names;
 }
 

@@ -20,7 +20,8 @@ std::filesystem::path weights_of(const std::string& weights, const std::string& 
 /// @return the file of the depth network that --weights names
 std::string depth_weights(const std::string& weights);
 
-/// @return the names that --select takes: likelihood, discriminator, classifier, both
+/// @return the names that --select takes: consensus, likelihood, discriminator, classifier,
+/// both
 const std::vector<std::string>& selection_names();
 
 /// @brief Throws ps::Error, naming the PixelCNN's file, unless it continues the autoencoder's

@@ -242,8 +242,10 @@ void add_eval_views(CLI::App& eval, const Context& context) {
           "those whose surface the input sees by true depth of both, and those that it does not. "
           "With --lpips also LPIPS, and a Frechet distance on features that the table names: it is "
           "no FID.\n"
-          "Methods: ours (keeps the likeliest completion); one-completion (of ours); "
-          "by-classifier, by-discriminator, by-both (keep the best in these eyes); sequential, "
+          "Methods: ours (keeps the completion that agrees most with all); one-completion (of "
+          "ours); "
+          "by-likelihood, by-classifier, by-discriminator, by-both (keep the best in these eyes); "
+          "sequential, "
           "independent; no-outpainter (the refiner fills in); rgb (colours as codes); mean-colour, "
           "telea, navier-stokes, nearest (plain fills of what the cloud shows); copy (the input "
           "itself).") +

@@ -62,13 +62,16 @@ std::vector<int> greatest(const std::vector<double>& scores, int count) {
   return numbers;
 }
 
-/// The number of the one of greatest likelihood.
-int likeliest(const std::vector<Completion>& completions) {
-  const auto less = [](const Completion& a, const Completion& b) {
-    return a.log_likelihood < b.log_likelihood;
-  };
-  return static_cast<int>(std::max_element(completions.begin(), completions.end(), less) -
-                          completions.begin());
+/// The number of the one to keep where nobody scores pictures.
+int kept(const std::vector<Completion>& completions, OutpaintOptions::Keep keep) {
+  if (keep == OutpaintOptions::Keep::agreed) {
+    return static_cast<int>(best_of(agreement(completions)));
+  }
+  std::vector<double> likelihoods;
+  for (const Completion& completion : completions) {
+    likelihoods.push_back(completion.log_likelihood);
+  }
+  return static_cast<int>(best_of(likelihoods));
 }
 
 /// About how long everything takes, for progress: milliseconds at the published widths.
@@ -215,7 +218,7 @@ void Outpainter::refine_and_score(View& view, const std::vector<int>& numbers) {
 
 /// The numbers of the completions that are worth refining.
 std::vector<int> Outpainter::screened(View& view) {
-  if (networks_.scorers.empty()) return {likeliest(view.completions)};
+  if (networks_.scorers.empty()) return {kept(view.completions, view.options.keep)};
   const int count = view.options.refine_best;
   if (count == 0 || static_cast<std::size_t>(count) >= view.completions.size()) {
     return numbers_from(0, static_cast<int>(view.completions.size()));
@@ -250,7 +253,7 @@ void Outpainter::draw_until_settled(View& view, Sampler& sampler) {
     const int count = std::min(OutpaintOptions::kRound, view.samples - drawn);
     sample(view, sampler, count);
     if (judged) refine_and_score(view, numbers_from(drawn - count, count));
-    const int best = judged ? view.result.best : likeliest(view.completions);
+    const int best = judged ? view.result.best : kept(view.completions, view.options.keep);
     if (best == leader && drawn >= 2 * (leader + 1)) break;
     leader = best;
   }

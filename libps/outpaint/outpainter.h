@@ -25,6 +25,10 @@ struct OutpaintOptions {
   double temperature = 0.5;  ///< 0 (greedy) to 2; published: 0.7, and 0.5 indoors
   std::uint64_t seed = 0;
   std::uint32_t view = 0;
+  /// Which completion is kept where there are no scorers: that which agrees most with all that were
+  /// drawn (selection.h), or the PixelCNN's likeliest.
+  enum class Keep { agreed, likeliest };
+  Keep keep = Keep::agreed;
   bool likelihood = false;  ///< count the PixelCNN's own mean log-likelihood beside the scorers
   /// Refine and score only so many, the best by a cheaper score; 0 = all. Without scorers, one.
   int refine_best = 0;
@@ -80,7 +84,7 @@ class Outpainter {
     const models::Autoencoder* autoencoder = nullptr;
     const models::PixelCnn* pixel_cnn = nullptr;
     const models::Refiner* refiner = nullptr;
-    /// May be empty: then the likeliest completion is kept, and it alone is decoded and refined.
+    /// May be empty: then one is kept by its codes (`keep`), and it alone is decoded and refined.
     std::vector<Scorer> scorers;
   };
   explicit Outpainter(Networks networks);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <string>
 
@@ -44,6 +45,20 @@ std::vector<double> totals(const std::vector<Signal>& signals) {
     }
   }
   return total;
+}
+
+std::vector<double> agreement(const std::vector<Completion>& completions) {
+  std::vector<double> shares(completions.size());
+  if (completions.empty()) return shares;
+  const std::size_t cells = completions.front().codes.size();
+  std::map<std::int32_t, int> votes;
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    votes.clear();
+    for (const Completion& completion : completions) ++votes[completion.codes[cell]];
+    for (std::size_t i = 0; i < shares.size(); ++i) shares[i] += votes[completions[i].codes[cell]];
+  }
+  for (double& share : shares) share /= static_cast<double>(cells * completions.size());
+  return shares;
 }
 
 std::size_t best_of(const std::vector<double>& totals) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "libps/outpaint/sampler.h"
+
 namespace ps::outpaint {
 
 /// @brief One opinion about all completions of a view.
@@ -23,6 +25,12 @@ std::vector<int> ranks(const std::vector<double>& values);
 /// total. Throws ps::Error when there is no signal, they differ in length, or a
 /// score is NaN (whose, and of which completion).
 std::vector<double> totals(const std::vector<Signal>& signals);
+
+/// @brief How far each completion agrees with all: the mean share of them, itself included, that
+/// have its code in a cell. The greatest has the least expected number of wrong cells, if each
+/// completion is as likely to be true (minimum Bayes risk: Kumar and Byrne, NAACL 2004).
+/// @param completions  of one size
+std::vector<double> agreement(const std::vector<Completion>& completions);
 
 /// @return the first of the greatest
 std::size_t best_of(const std::vector<double>& totals);

@@ -20,9 +20,9 @@ struct OutpaintKnobOptions {
   int selection_samples = 16;     ///< completions that selections choose from
 };
 
-/// @brief How many completions are drawn of a view, the likeliest being kept: 1 to 100. The target
-/// is outpainted from the input alone and rendered from the cloud, as scenes are. PSNR where the
-/// input does not see the target, and of all of it (and LPIPS).
+/// @brief How many completions are drawn of a view, one being kept by consensus: 1 to 100. The
+/// target is outpainted from the input alone and rendered from the cloud, as scenes are. PSNR where
+/// the input does not see the target, and of all of it (and LPIPS).
 Knob samples_knob(const OutpaintKnobOptions& options);
 
 /// @brief Which opinion chooses the completion that is kept. Scores as samples_knob().

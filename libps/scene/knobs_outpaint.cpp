@@ -91,10 +91,12 @@ Knob selection_knob(const OutpaintKnobOptions& options) {
         if (one.name == scorer) scorers.push_back(one);
       }
     }
-    knob.settings.push_back({name, std::string(name) == "likelihood"});
+    knob.settings.push_back({name, std::string(name) == "consensus"});
   };
   add("first", "none", 1);
+  add("consensus", "none", options.selection_samples);
   add("likelihood", "none", options.selection_samples);
+  settings.back().scene.outpaint.keep = outpaint::OutpaintOptions::Keep::likeliest;
   add("classifier", "entropy", options.selection_samples);
   add("discriminator", "discriminator", options.selection_samples);
   add("both", "all", options.selection_samples);

@@ -192,7 +192,8 @@ std::unique_ptr<ViewMethod> make_view_method(const std::string& name,
     outpaint.until_settled = false;
     outpaint.refine_best = 0;
   } else if (name == "by-likelihood") {
-    networks.outpaint.scorers.clear();  // then likelihood alone selects
+    networks.outpaint.scorers.clear();
+    outpaint.keep = outpaint::OutpaintOptions::Keep::likeliest;
   } else if (name == "by-both") {
     networks.outpaint.scorers = {scorer_named(all_networks, "classifier"),
                                  scorer_named(all_networks, "discriminator")};

@@ -129,28 +129,32 @@ TEST_F(OutpainterOfRandomWeights, one_signal_alone_chooses_its_own_best) {
   EXPECT_EQ(result_of({discriminator_scorer(discriminator_)}).best, 0);
 }
 
-TEST_F(OutpainterOfRandomWeights, without_scorers_the_likeliest_alone_is_refined) {
+TEST_F(OutpainterOfRandomWeights, without_scorers_one_is_kept_by_its_codes_and_refined_alone) {
   const auto completions = Sampler(pixel_cnn_, order_of(background_), known_codes()).sample(0, 40);
-  const auto likeliest_of = [&](int count) {
-    const auto less = [](const Completion& a, const Completion& b) {
-      return a.log_likelihood < b.log_likelihood;
-    };
-    return static_cast<int>(
-        std::max_element(completions.begin(), completions.begin() + count, less) -
-        completions.begin());
+  using Keep = OutpaintOptions::Keep;
+  const auto best_of_first = [&](int count, Keep keep) {
+    const std::vector<Completion> drawn(completions.begin(), completions.begin() + count);
+    std::vector<double> scores = agreement(drawn);
+    for (std::size_t i = 0; keep == Keep::likeliest && i < scores.size(); ++i) {
+      scores[i] = drawn[i].log_likelihood;
+    }
+    return static_cast<int>(best_of(scores));
   };
   OutpaintOptions options;
-  for (const bool until_settled : {false, true}) {
-    for (const int samples : {1, 9, 40}) {
-      options.samples = samples;
-      options.until_settled = until_settled;
-      const Outpainted result = outpainter({}).run(projection_, background_, options);
-      const int best = likeliest_of(result.report.drawn);
-      EXPECT_EQ(result.best, best) << samples;
-      EXPECT_EQ(result.refined, std::vector<int>{best}) << samples;
-      EXPECT_EQ(result.codes, completions[static_cast<std::size_t>(best)].codes) << samples;
-      EXPECT_EQ(worst_difference(result.image, refined_whole(result.codes, options)), 0);
-      EXPECT_TRUE(until_settled || result.report.drawn == samples);
+  for (const Keep keep : {Keep::agreed, Keep::likeliest}) {
+    for (const bool until_settled : {false, true}) {
+      for (const int samples : {1, 9, 40}) {
+        options.keep = keep;
+        options.samples = samples;
+        options.until_settled = until_settled;
+        const Outpainted result = outpainter({}).run(projection_, background_, options);
+        const int best = best_of_first(result.report.drawn, keep);
+        EXPECT_EQ(result.best, best) << samples;
+        EXPECT_EQ(result.refined, std::vector<int>{best}) << samples;
+        EXPECT_EQ(result.codes, completions[static_cast<std::size_t>(best)].codes) << samples;
+        EXPECT_EQ(worst_difference(result.image, refined_whole(result.codes, options)), 0);
+        EXPECT_TRUE(until_settled || result.report.drawn == samples);
+      }
     }
   }
 }

@@ -59,5 +59,17 @@ TEST(Selection, errors_say_what_is_wrong) {
                   "score 1 of signal b is not a number"));
 }
 
+TEST(Agreement, is_the_mean_share_that_has_the_same_code) {
+  const std::vector<double> shares =
+      agreement({{{1, 2, 3}}, {{1, 2, 4}}, {{5, 2, 4}}, {{1, 6, 4}}});
+  const std::vector<double> expected = {(3 + 3 + 1) / 12., (3 + 3 + 3) / 12., (1 + 3 + 3) / 12.,
+                                        (3 + 1 + 3) / 12.};
+  ASSERT_EQ(shares.size(), expected.size());
+  for (std::size_t i = 0; i < shares.size(); ++i) EXPECT_DOUBLE_EQ(shares[i], expected[i]) << i;
+  EXPECT_EQ(best_of(shares), 1u);
+  EXPECT_EQ(agreement({{{7, 8}}}), std::vector<double>{1});
+  EXPECT_TRUE(agreement({}).empty());
+}
+
 }  // namespace
 }  // namespace ps::outpaint
