@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/lens_arguments.h"
 
+#include <algorithm>
+
 #include "apps/program.h"
 #include "io/intrinsics_file.h"
 
@@ -11,7 +13,7 @@ void LensArguments::add_to(CLI::App& verb) {
                                "Lens: Open3D JSON, COLMAP cameras.txt or 3x3 text")
                    ->type_name("FILE");
   verb.add_option("--fov", fov,
-                  "Lens: horizontal field of view in degrees (default: from EXIF, else 60)")
+                  "Lens: horizontal field of view in degrees (default: from EXIF, else 60 along the long side)")
       ->type_name("DEG")
       ->check(in_range(1, 179))
       ->excludes(file)
@@ -26,14 +28,17 @@ PhotoLens choose_lens(const LensArguments& arguments, const Photo& photo, const 
     return {read_intrinsics(arguments.intrinsics, width, height), "--intrinsics"};
   }
   if (arguments.fov != 0) return {intrinsics_from_fov(width, height, arguments.fov), "--fov"};
-  Intrinsics lens = intrinsics_from_fov(width, height, kDefaultFov);
+  // Along the long side: a camera held upright is the same camera.
+  const int side = std::max(width, height);
+  const double focal = intrinsics_from_fov(side, side, kDefaultFov).fx;
+  Intrinsics lens = {width, height, focal, focal, (width - 1) / 2.0, (height - 1) / 2.0};
   if (photo.focal_px) {
     lens.fx = lens.fy = *photo.focal_px;
     check(lens, name + ": EXIF focal length");
     context.detail("lens: the photo's EXIF focal length");
     return {lens, "EXIF"};
   }
-  context.say("lens: 60 degrees across, as the photo does not say; --intrinsics or --fov does");
+  context.say("lens: 60 degrees along the long side, as the photo does not say; --intrinsics or --fov does");
   return {lens, "default"};
 }
 

@@ -23,7 +23,7 @@ struct PhotoLens {
   std::string from;  ///< "--intrinsics", "--fov", "EXIF" or "default"
 };
 
-/// @brief What the user says, else what the photo says, else 60 degrees; says which.
+/// @brief What the user says, else what the photo says, else 60 degrees along the long side; says which.
 /// @param name  the photo's, for messages
 PhotoLens choose_lens(const LensArguments& arguments, const Photo& photo, const std::string& name,
                       const Context& context);

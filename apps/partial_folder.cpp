@@ -8,6 +8,7 @@
 
 #include <cerrno>
 #include <charconv>
+#include <fstream>
 #include <optional>
 #include <system_error>
 #include <vector>
@@ -44,11 +45,21 @@ std::optional<pid_t> process_of(const std::string& name, const std::string& pref
   return exact ? std::optional<pid_t>(process) : std::nullopt;
 }
 
+/// Killed, though its parent has not asked for its status yet.
+bool is_zombie(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  std::string text;
+  std::getline(file, text);
+  const std::size_t name_end = text.rfind(')');  // of "123 (name) Z 1 ..."
+  return name_end != std::string::npos && text.compare(name_end, 3, ") Z") == 0;
+}
+
 /// A process of another PID namespace or machine is told by its lock; where a file system has no
 /// locks, everything is taken to be in use. Our own number is of an earlier process, unless that
 /// lock is held.
 bool has_ended(pid_t process, const fs::path& folder) {
-  const bool lives = process != getpid() && (kill(process, 0) == 0 || errno != ESRCH);
+  const bool lives = process != getpid() && (kill(process, 0) == 0 || errno != ESRCH) &&
+                     !is_zombie(process);
   if (lives) return false;
   const Lock lock(folder);
   if (lock.descriptor >= 0) close(lock.descriptor);
