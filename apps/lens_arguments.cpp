@@ -13,7 +13,8 @@ void LensArguments::add_to(CLI::App& verb) {
                                "Lens: Open3D JSON, COLMAP cameras.txt or 3x3 text")
                    ->type_name("FILE");
   verb.add_option("--fov", fov,
-                  "Lens: horizontal field of view in degrees (default: from EXIF, else 60 along the long side)")
+                  "Lens: horizontal field of view in degrees (default: from EXIF, else 60 along "
+                  "the long side)")
       ->type_name("DEG")
       ->check(in_range(1, 179))
       ->excludes(file)
@@ -38,7 +39,9 @@ PhotoLens choose_lens(const LensArguments& arguments, const Photo& photo, const 
     context.detail("lens: the photo's EXIF focal length");
     return {lens, "EXIF"};
   }
-  context.say("lens: 60 degrees along the long side, as the photo does not say; --intrinsics or --fov does");
+  context.say(
+      "lens: 60 degrees along the long side, as the photo does not say; --intrinsics or --fov "
+      "does");
   return {lens, "default"};
 }
 

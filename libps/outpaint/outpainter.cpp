@@ -62,16 +62,18 @@ std::vector<int> greatest(const std::vector<double>& scores, int count) {
   return numbers;
 }
 
-/// The number of the one to keep where nobody scores pictures.
-int kept(const std::vector<Completion>& completions, OutpaintOptions::Keep keep) {
-  if (keep == OutpaintOptions::Keep::agreed) {
-    return static_cast<int>(best_of(agreement(completions)));
-  }
+std::vector<double> likelihoods_of(const std::vector<Completion>& completions) {
   std::vector<double> likelihoods;
   for (const Completion& completion : completions) {
     likelihoods.push_back(completion.log_likelihood);
   }
-  return static_cast<int>(best_of(likelihoods));
+  return likelihoods;
+}
+
+/// The number of the one to keep where nobody scores pictures.
+int kept(const std::vector<Completion>& completions, OutpaintOptions::Keep keep) {
+  const bool agreed = keep == OutpaintOptions::Keep::agreed;
+  return static_cast<int>(best_of(agreed ? agreement(completions) : likelihoods_of(completions)));
 }
 
 /// About how long everything takes, for progress: milliseconds at the published widths.
@@ -224,11 +226,7 @@ std::vector<int> Outpainter::screened(View& view) {
     return numbers_from(0, static_cast<int>(view.completions.size()));
   }
   if (view.options.screen == OutpaintOptions::Screen::likelihood) {
-    std::vector<double> likelihoods;
-    for (const Completion& completion : view.completions) {
-      likelihoods.push_back(completion.log_likelihood);
-    }
-    return greatest(likelihoods, count);
+    return greatest(likelihoods_of(view.completions), count);
   }
   std::vector<Signal> signals = view.signals;
   nn::Tensor picture(view.pictures.image().shape());

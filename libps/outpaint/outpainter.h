@@ -19,7 +19,7 @@ struct OutpaintOptions {
   int samples = 50;  ///< completions drawn, 1 to 1000; at most, when `until_settled`
   /// Draw in rounds of kRound until the best of all came in the first half of what is drawn and the
   /// last round did not change it. Were totals independent, one more round would then change it
-  /// with a chance of kRound / (drawn + kRound).
+  /// with a chance of kRound / (drawn + kRound); agreements (`keep`) are not quite that.
   bool until_settled = false;
   static constexpr int kRound = 8;
   double temperature = 0.5;  ///< 0 (greedy) to 2; published: 0.7, and 0.5 indoors

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numeric>
 #include <string>
 
@@ -51,11 +50,18 @@ std::vector<double> agreement(const std::vector<Completion>& completions) {
   std::vector<double> shares(completions.size());
   if (completions.empty()) return shares;
   const std::size_t cells = completions.front().codes.size();
-  std::map<std::int32_t, int> votes;
+  std::int32_t most = 0;
+  for (const Completion& completion : completions) {
+    for (const std::int32_t code : completion.codes) most = std::max(most, code);
+  }
+  std::vector<int> votes(static_cast<std::size_t>(most) + 1);
   for (std::size_t cell = 0; cell < cells; ++cell) {
-    votes.clear();
-    for (const Completion& completion : completions) ++votes[completion.codes[cell]];
-    for (std::size_t i = 0; i < shares.size(); ++i) shares[i] += votes[completions[i].codes[cell]];
+    const auto votes_of = [&](const Completion& completion) -> int& {
+      return votes[static_cast<std::size_t>(completion.codes[cell])];
+    };
+    for (const Completion& completion : completions) ++votes_of(completion);
+    for (std::size_t i = 0; i < shares.size(); ++i) shares[i] += votes_of(completions[i]);
+    for (const Completion& completion : completions) votes_of(completion) = 0;
   }
   for (double& share : shares) share /= static_cast<double>(cells * completions.size());
   return shares;

@@ -29,7 +29,7 @@ std::vector<double> totals(const std::vector<Signal>& signals);
 /// @brief How far each completion agrees with all: the mean share of them, itself included, that
 /// have its code in a cell. The greatest has the least expected number of wrong cells, if each
 /// completion is as likely to be true (minimum Bayes risk: Kumar and Byrne, NAACL 2004).
-/// @param completions  of one size
+/// @param completions  of one size; codes are 0 or more
 std::vector<double> agreement(const std::vector<Completion>& completions);
 
 /// @return the first of the greatest

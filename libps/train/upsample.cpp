@@ -32,7 +32,7 @@ void widen(const float* row, float* to, std::int64_t w, std::int64_t c) {
 
 /// What widen() passes back: each pixel's share of the four that it is part of. Beyond the ends,
 /// the last pixel stands for its neighbour.
-PS_ANY_WIDTH void narrow(const float* row, float* to, std::int64_t w, std::int64_t c) {
+PS_ANY_WIDTH void gather_back(const float* row, float* to, std::int64_t w, std::int64_t c) {
   const std::int64_t last = 2 * w - 1;
   for (std::int64_t x = 0; x < w; ++x) {
     const float* const a = row + std::max<std::int64_t>(2 * x - 1, 0) * c;
@@ -50,12 +50,12 @@ Tensor empty_like_of(const Tensor& x, std::int64_t h, std::int64_t w) {
   return torch::empty({x.size(0), x.size(1), h, w}, x.options(), torch::MemoryFormat::ChannelsLast);
 }
 
-Tensor upsampled(const Tensor& image) {
-  const Tensor x = channels_last(image);
+/// For each two rows of the output: blend(near row, far row, between, values), then
+/// spread(between, row of the output, w, c).
+template <class To, class Blend, class Spread>
+void for_row_pairs(const Tensor& x, To* to, const Blend& blend, const Spread& spread) {
   const std::int64_t c = x.size(1), h = x.size(2), w = x.size(3), row = w * c;
-  const Tensor out = empty_like_of(x, 2 * h, 2 * w);
   const float* const from = x.data_ptr<float>();
-  float* const to = out.data_ptr<float>();
   at::parallel_for(0, x.size(0) * h, 1, [&](std::int64_t begin, std::int64_t end) {
     std::vector<float> mixed(static_cast<std::size_t>(row));
     for (std::int64_t i = begin; i < end; ++i) {
@@ -65,32 +65,46 @@ Tensor upsampled(const Tensor& image) {
         const bool inside = below != 0 ? y + 1 < h : y > 0;
         const std::int64_t step = below != 0 ? row : -row;
         blend(at, inside ? at + step : at, mixed.data(), row);
-        widen(mixed.data(), to + (2 * i + below) * 2 * row, w, c);
+        spread(mixed.data(), to + (2 * i + below) * 2 * row, w, c);
       }
     }
   });
+}
+
+/// The way back, for each row of the input: mix(the four rows of the gradient that it went to, from
+/// above, between, values), then gather(between, number of the first value of the row).
+template <class From, class Mix, class Gather>
+void for_rows_back(const From* from, const Tensor& input, const Mix& mix, const Gather& gather) {
+  const std::int64_t c = input.size(1), h = input.size(2), w = input.size(3), row = 2 * w * c;
+  at::parallel_for(0, input.size(0) * h, 1, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<float> mixed(static_cast<std::size_t>(row));
+    for (std::int64_t i = begin; i < end; ++i) {
+      const std::int64_t y = i % h;
+      const From* const b = from + 2 * i * row;
+      const From* const d = b + row;
+      mix(y > 0 ? b - row : b, b, d, y + 1 < h ? d + row : d, mixed.data(), row);
+      gather(mixed.data(), i * w * c);
+    }
+  });
+}
+
+Tensor upsampled(const Tensor& image) {
+  const Tensor x = channels_last(image);
+  const Tensor out = empty_like_of(x, 2 * x.size(2), 2 * x.size(3));
+  for_row_pairs(x, out.data_ptr<float>(), blend, widen);
   return out;
 }
 
 Tensor passed_back(const Tensor& gradient) {
   const Tensor g = channels_last(gradient);
-  const std::int64_t c = g.size(1), h = g.size(2) / 2, w = g.size(3) / 2, row = 2 * w * c;
-  const Tensor out = empty_like_of(g, h, w);
-  const float* const from = g.data_ptr<float>();
+  const Tensor out = empty_like_of(g, g.size(2) / 2, g.size(3) / 2);
   float* const to = out.data_ptr<float>();
-  at::parallel_for(0, g.size(0) * h, 1, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<float> mixed(static_cast<std::size_t>(row));
-    for (std::int64_t i = begin; i < end; ++i) {
-      const std::int64_t y = i % h;
-      const float* const b = from + 2 * i * row;
-      const float* const a = y > 0 ? b - row : b;
-      const float* const d = b + row;
-      const float* const e = y + 1 < h ? d + row : d;
-      for (std::int64_t k = 0; k < row; ++k) {
-        mixed[static_cast<std::size_t>(k)] = kNear * (b[k] + d[k]) + kFar * (a[k] + e[k]);
-      }
-      narrow(mixed.data(), to + i * w * c, w, c);
-    }
+  const auto mix = [](const float* a, const float* b, const float* d, const float* e, float* mixed,
+                      std::int64_t n) {
+    for (std::int64_t k = 0; k < n; ++k) mixed[k] = kNear * (b[k] + d[k]) + kFar * (a[k] + e[k]);
+  };
+  for_rows_back(g.data_ptr<float>(), out, mix, [&](const float* mixed, std::int64_t first) {
+    gather_back(mixed, to + first, out.size(3), out.size(1));
   });
   return out;
 }
@@ -113,7 +127,7 @@ PS_ANY_WIDTH void rectified_blend(const float* near, const float* far, float* to
 }
 
 /// As widen().
-PS_ANY_WIDTH void narrow_widen(const float* row, Narrow* to, std::int64_t w, std::int64_t c) {
+PS_ANY_WIDTH void widen_to_narrow(const float* row, Narrow* to, std::int64_t w, std::int64_t c) {
   for (std::int64_t x = 0; x < w; ++x, row += c, to += 2 * c) {
     const float* const left = x > 0 ? row - c : row;
     const float* const right = x + 1 < w ? row + c : row;
@@ -138,47 +152,25 @@ class ReluUpsample : public torch::autograd::Function<ReluUpsample> {
   static Tensor forward(torch::autograd::AutogradContext* context, const Tensor& image) {
     const Tensor x = channels_last(image);
     context->save_for_backward({x});
-    const std::int64_t c = x.size(1), h = x.size(2), w = x.size(3), row = w * c;
     const Tensor out =
-        torch::empty({x.size(0), c, 2 * h, 2 * w}, x.options().dtype(torch::kBFloat16),
-                     torch::MemoryFormat::ChannelsLast);
-    const float* const from = x.data_ptr<float>();
-    auto* const to = static_cast<Narrow*>(out.data_ptr());
-    at::parallel_for(0, x.size(0) * h, 1, [&](std::int64_t begin, std::int64_t end) {
-      std::vector<float> mixed(static_cast<std::size_t>(row));
-      for (std::int64_t i = begin; i < end; ++i) {
-        const std::int64_t y = i % h;
-        const float* const at = from + i * row;
-        for (const std::int64_t below : {0, 1}) {
-          const bool inside = below != 0 ? y + 1 < h : y > 0;
-          const std::int64_t step = below != 0 ? row : -row;
-          rectified_blend(at, inside ? at + step : at, mixed.data(), row);
-          narrow_widen(mixed.data(), to + (2 * i + below) * 2 * row, w, c);
-        }
-      }
-    });
+        torch::empty({x.size(0), x.size(1), 2 * x.size(2), 2 * x.size(3)},
+                     x.options().dtype(torch::kBFloat16), torch::MemoryFormat::ChannelsLast);
+    for_row_pairs(x, static_cast<Narrow*>(out.data_ptr()), rectified_blend, widen_to_narrow);
     return out;
   }
 
   static torch::autograd::variable_list backward(torch::autograd::AutogradContext* context,
                                                  torch::autograd::variable_list gradients) {
     const Tensor x = context->get_saved_variables()[0], g = channels_last(gradients[0]);
-    const std::int64_t c = x.size(1), h = x.size(2), w = x.size(3), row = 2 * w * c;
     const Tensor out = torch::empty_like(x);
-    const auto* const from = static_cast<const Narrow*>(g.data_ptr());
     const float* const cut = x.data_ptr<float>();
     float* const to = out.data_ptr<float>();
-    at::parallel_for(0, x.size(0) * h, 1, [&](std::int64_t begin, std::int64_t end) {
-      std::vector<float> mixed(static_cast<std::size_t>(row));
-      for (std::int64_t i = begin; i < end; ++i) {
-        const std::int64_t y = i % h;
-        const Narrow* const b = from + 2 * i * row;
-        const Narrow* const d = b + row;
-        mix_rows(y > 0 ? b - row : b, b, d, y + 1 < h ? d + row : d, mixed.data(), row);
-        narrow(mixed.data(), to + i * w * c, w, c);
-        cut_off(cut + i * w * c, to + i * w * c, w * c);
-      }
-    });
+    const std::int64_t c = x.size(1), w = x.size(3);
+    const auto gather = [&](const float* mixed, std::int64_t first) {
+      gather_back(mixed, to + first, w, c);
+      cut_off(cut + first, to + first, w * c);
+    };
+    for_rows_back(static_cast<const Narrow*>(g.data_ptr()), x, mix_rows, gather);
     return {out};
   }
 };
