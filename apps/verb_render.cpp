@@ -14,8 +14,8 @@
 #include "apps/start_pose.h"
 #include "io/trajectory.h"
 #include "libps/core/error.h"
-#include "libps/geometry/splat.h"
 #include "libps/scene/camera_path.h"
+#include "libps/scene/closed_splat.h"
 
 namespace ps::apps {
 namespace {
@@ -32,6 +32,7 @@ struct RenderArguments {
   double pitch = 17.2;
   double orbit = -1;  ///< below 0 = not given
   SplatOptions splat;
+  float finest = kFinestSplat;
   std::vector<int> background = {0, 0, 0};
   bool no_renormalise = false;
   SinkOptions sink;
@@ -66,7 +67,12 @@ void add_path_options(CLI::App& verb, RenderArguments& a) {
 }
 
 void add_picture_options(CLI::App& verb, RenderArguments& a) {
-  verb.add_option("--radius", a.splat.radius, "Radius of a splat in pixels")
+  verb.add_option("--radius", a.splat.radius, "Radius of the widest splats in pixels")
+      ->type_name("PX")
+      ->check(in_range(0.01, 64));
+  verb.add_option("--finest", a.finest,
+                  "Radius of the narrowest splats in pixels, whose gaps wider ones close; at least "
+                  "--radius: all alike, as published")
       ->type_name("PX")
       ->check(in_range(0.01, 64));
   verb.add_option("--points-per-pixel", a.splat.points_per_pixel,
@@ -155,13 +161,14 @@ struct Drawn {
   double covered = 0;  ///< mean share of the pixels that a point falls on
 };
 
-Drawn draw(const Cloud& cloud, const Shot& shot, const SplatOptions& options, FrameSink& sink,
+Drawn draw(const Cloud& cloud, const Shot& shot, const RenderArguments& a, FrameSink& sink,
            const Context& context) {
+  const SplatOptions options = splat_options(a);
   Drawn drawn;
   Progress progress(context, "render", shot.poses.size());
   for (std::size_t i = 0; i < shot.poses.size(); ++i) {
     const Stopwatch watch;
-    const Splat frame = splat(cloud, shot.lens, shot.poses[i], options);
+    const Splat frame = closed_splat(cloud, shot.lens, shot.poses[i], options, a.finest);
     drawn.seconds += watch.seconds();
     drawn.covered += static_cast<double>(cv::countNonZero(frame.hit)) /
                      static_cast<double>(frame.hit.total() * shot.poses.size());
@@ -183,7 +190,7 @@ void run_render(const RenderArguments& a, const Context& context) {
   const Shot shot = plan(a, cloud, context);
   const cv::Size size(shot.lens.width, shot.lens.height);
   const auto sink = make_frame_sink(a.output, size, a.sink);
-  const Drawn drawn = draw(cloud, shot, splat_options(a), *sink, context);
+  const Drawn drawn = draw(cloud, shot, a, *sink, context);
   sink->finish(shot.poses, shot.lens);
 
   if (drawn.covered == 0) context.warn("no point falls into any frame; another --start may do");

@@ -43,6 +43,10 @@ void check(const SplatOptions& o, cv::Size size) {
   if (!(o.radius > 0 && o.radius <= 64)) {
     throw Error("splat radius", std::to_string(o.radius), "more than 0 and at most 64 pixels");
   }
+  if (!(o.finest >= 0)) throw Error("finest splat", std::to_string(o.finest), "0 pixels or more");
+  if (!(o.footprints >= 0)) {
+    throw Error("splat footprints", std::to_string(o.footprints), "0 or more");
+  }
   if (!(o.near >= 0)) throw Error("splat near", std::to_string(o.near), "at least 0");
   if (o.points_per_pixel < 1) {
     throw Error("points per pixel", std::to_string(o.points_per_pixel), "at least 1");
@@ -88,7 +92,7 @@ class Painter {
     tile.live = ~std::uint64_t{0};
     const int x0 = index % bins_.columns * kTile, y0 = index / bins_.columns * kTile;
     const splat_kernel::Params params = {static_cast<float>(x0), static_cast<float>(y0),
-                                         options_.radius, options_.count_hits ? 0 : kEnough,
+                                         options_.count_hits ? 0 : kEnough,
                                          options_.points_per_pixel};
     entries.start(bins_.entries.data() + bins_.start[index],
                   bins_.entries.data() + bins_.start[index + 1]);
@@ -108,12 +112,12 @@ class Painter {
   template <typename ColorOf>
   TilePoint tile_point(std::size_t i, const ColorOf& color_of) const {
     const cv::Vec3f c = color_of(i);
-    return {points_.u[i], points_.v[i], points_.z[i], c[0], c[1], c[2]};
+    const float r = points_.radius.empty() ? options_.radius : points_.radius[i];
+    return {points_.u[i], points_.v[i], points_.z[i], c[0], c[1], c[2], r, 1 / (r * r)};
   }
 
   void list_nearest(const std::uint64_t* entries, const TilePoint* points, int count, int x0,
                     int y0) {
-    const float r2 = options_.radius * options_.radius;
     const int x1 = std::min(x0 + kTile, result_.color.cols);
     const int y1 = std::min(y0 + kTile, result_.color.rows);
     for (int i = 0; i < count; ++i) {
@@ -121,7 +125,7 @@ class Painter {
         for (int x = x0; x < x1; ++x) {
           const float dx = static_cast<float>(x) - points[i].u;
           const float dy = static_cast<float>(y) - points[i].v;
-          if (!(dx * dx + dy * dy < r2)) continue;
+          if (!(dx * dx + dy * dy < points[i].radius * points[i].radius)) continue;
           cv::Vec4i& list = result_.nearest(y, x);
           int* end = list.val + std::min(4, options_.points_per_pixel);
           int* free = std::find(list.val, end, -1);
@@ -171,7 +175,7 @@ Splat splat(const PointsView& points, const Intrinsics& intrinsics, const Pose& 
   check(options, size);
   check(intrinsics, "splat");
   checked_pose(world_from_cam.matrix(), "splat");
-  const PlaneArrays plane = project_points(points, intrinsics, world_from_cam, options.near);
+  const PlaneArrays plane = project_points(points, intrinsics, world_from_cam, options);
   return Painter(plane, size, options).paint([&](std::size_t i) {
     std::uint8_t bgr[3];
     std::memcpy(bgr, points.data + i * points.stride + points.rgb, sizeof bgr);
@@ -185,7 +189,7 @@ Splat splat_plane(const PlanePoints& points, cv::Size size, const SplatOptions& 
   if (points.v.size() != count || points.z.size() != count || points.color.size() != count) {
     throw Error("splat", "u, v, z and color differ in length", "one of each for each point");
   }
-  PlaneArrays plane = {points.u, points.v, points.z};
+  PlaneArrays plane = {points.u, points.v, points.z, {}};
   for (std::size_t i = 0; i < count; ++i) {
     const bool drawn = plane.z[i] > options.near && std::isfinite(plane.z[i]) &&
                        std::isfinite(plane.u[i]) && std::isfinite(plane.v[i]);

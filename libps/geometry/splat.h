@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "libps/core/image.h"
@@ -18,7 +20,11 @@ namespace ps {
 /// @brief What the soft z-buffer does with each point (SPEC.md 4; PixelSynth section 3.1, after
 /// Wiles et al., SynSin, CVPR 2020).
 struct SplatOptions {
-  float radius = 4;            ///< pixels, at any image size; a hit is closer than this
+  float radius = 4;  ///< pixels, at any image size; a hit is closer than this
+  /// Pixels; above 0, each point has its own radius: `footprints` times what its footprint covers
+  /// where it is drawn, at least this and at most `radius`.
+  float finest = 0;
+  float footprints = 1;        ///< so, the camera that saw points sees them as they were
   int points_per_pixel = 128;  ///< only the nearest so many hits of a pixel count
   int dilation = 13;           ///< side of the square that widens the missing mask; odd; 1 = none
   float near = 1e-3f;          ///< metres; points at or before this depth are skipped
@@ -40,21 +46,34 @@ struct Splat {
 
 /// @brief Points of any layout, world frame, metres; borrowed, not owned.
 /// Each point's record starts with float x, y, z; `rgb` is the byte offset of its b, g, r bytes
-/// (PCL's order) from the record's start.
+/// (PCL's order) from the record's start, `footprint` that of a float, metres; 0 = it has none.
 struct PointsView {
   const std::byte* data = nullptr;
   std::size_t count = 0;
   std::size_t stride = 0;
   std::size_t rgb = 0;
+  std::size_t footprint = 0;
 };
 
-/// @return a view of any PCL cloud whose points have x, y, z and rgb
+template <typename PointT, typename = void>
+struct HasFootprint : std::false_type {};
+template <typename PointT>
+struct HasFootprint<PointT, std::void_t<decltype(std::declval<PointT>().footprint)>>
+    : std::true_type {};
+
+/// @return a view of any PCL cloud whose points have x, y, z and rgb, and perhaps a footprint
 template <typename PointT>
 PointsView points_view(const pcl::PointCloud<PointT>& cloud) {
   if (cloud.empty()) return {};
   const auto* x = reinterpret_cast<const std::byte*>(&cloud.points.front().x);
-  const auto* rgb = reinterpret_cast<const std::byte*>(&cloud.points.front().rgb);
-  return {x, cloud.points.size(), sizeof(PointT), static_cast<std::size_t>(rgb - x)};
+  const auto offset = [&](const float& field) {
+    return static_cast<std::size_t>(reinterpret_cast<const std::byte*>(&field) - x);
+  };
+  PointsView view = {x, cloud.points.size(), sizeof(PointT), offset(cloud.points.front().rgb), 0};
+  if constexpr (HasFootprint<PointT>::value) {
+    view.footprint = offset(cloud.points.front().footprint);
+  }
+  return view;
 }
 
 /// @brief Points in the image plane, ready to be splatted; arrays of one length.
@@ -68,7 +87,7 @@ struct PlanePoints {
 /// @brief Splats a cloud into a camera. Points that are not finite are skipped.
 /// The result does not depend on the number of threads or on the machine's vector width.
 /// Throws ps::Error when the camera, the pose or an option is unsound: sides up to 16384 pixels,
-/// radius in (0, 64], dilation odd, near at least 0.
+/// radius in (0, 64], finest and footprints at least 0, dilation odd, near at least 0.
 Splat splat(const PointsView& points, const Intrinsics& intrinsics, const Pose& world_from_cam,
             const SplatOptions& options = {});
 

@@ -38,7 +38,8 @@ class TileRanges {
   TileRange operator()(std::size_t i) const {
     const float u = points_.u[i], v = points_.v[i];
     if (points_.z[i] <= 0) return {};
-    const float left = u - radius_, right = u + radius_, top = v - radius_, bottom = v + radius_;
+    const float r = points_.radius.empty() ? radius_ : points_.radius[i];
+    const float left = u - r, right = u + r, top = v - r, bottom = v + r;
     if (!(right >= 0 && bottom >= 0 && left <= size_.width - 1 && top <= size_.height - 1)) {
       return {};
     }
@@ -57,10 +58,21 @@ class TileRanges {
   float radius_;
 };
 
+/// Pixels; `at_one` is how many a metre of footprint gets, a metre away.
+float radius_of(const PointsView& points, std::size_t i, float at_one, float z,
+                const SplatOptions& options) {
+  if (points.footprint == 0) return options.finest;
+  float footprint;
+  std::memcpy(&footprint, points.data + i * points.stride + points.footprint, sizeof footprint);
+  const float wanted = at_one * footprint / z;
+  // Also what is no number is drawn as fine as may be.
+  return wanted > options.finest ? std::min(wanted, options.radius) : options.finest;
+}
+
 }  // namespace
 
 PlaneArrays project_points(const PointsView& points, const Intrinsics& k,
-                           const Pose& world_from_cam, float near) {
+                           const Pose& world_from_cam, const SplatOptions& options) {
   const Eigen::Matrix<double, 3, 4> exact = world_from_cam.inverse().matrix().topRows<3>();
   float m[3][4];
   for (int row = 0; row < 3; ++row) {
@@ -73,6 +85,9 @@ PlaneArrays project_points(const PointsView& points, const Intrinsics& k,
   plane.u.resize(points.count);
   plane.v.resize(points.count);
   plane.z.resize(points.count);
+  const bool own_radii = options.finest > 0 && options.finest < options.radius;
+  if (own_radii) plane.radius.resize(points.count);
+  const float at_one = options.footprints * std::sqrt(fx * fy);
   parallel_chunks(points.count, kChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       float p[3];
@@ -81,10 +96,12 @@ PlaneArrays project_points(const PointsView& points, const Intrinsics& k,
       const float y = m[1][0] * p[0] + m[1][1] * p[1] + m[1][2] * p[2] + m[1][3];
       const float z = m[2][0] * p[0] + m[2][1] * p[1] + m[2][2] * p[2] + m[2][3];
       const float u = fx * x / z + cx, v = fy * y / z + cy;
-      const bool drawn = z > near && std::isfinite(z) && std::isfinite(u) && std::isfinite(v);
+      const bool drawn =
+          z > options.near && std::isfinite(z) && std::isfinite(u) && std::isfinite(v);
       plane.u[i] = u;
       plane.v[i] = v;
       plane.z[i] = drawn ? z : 0;
+      if (own_radii) plane.radius[i] = radius_of(points, i, at_one, z, options);
     }
   });
   return plane;

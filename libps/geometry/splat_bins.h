@@ -12,12 +12,13 @@ namespace ps {
 /// Points on the image plane, as arrays; a point that is not drawn has z = 0.
 struct PlaneArrays {
   std::vector<float> u, v, z;
+  std::vector<float> radius;  ///< pixels; empty = all have that of the options
 };
 
-/// @brief Projects points into a camera, in single precision; points at or before `near`, and
-/// points that are not finite, get z = 0.
+/// @brief Projects points into a camera, in single precision; points at or before options.near, and
+/// points that are not finite, get z = 0. Radii are filled in if options.finest asks for them.
 PlaneArrays project_points(const PointsView& points, const Intrinsics& intrinsics,
-                           const Pose& world_from_cam, float near);
+                           const Pose& world_from_cam, const SplatOptions& options);
 
 /// @brief For each tile of the image, the points that may hit it, in no order.
 /// An entry is (depth's bits << 32) | index, so that sorting entries sorts by (depth, index).
@@ -28,6 +29,7 @@ struct TileBins {
   std::vector<std::uint64_t> entries;
 };
 
+/// @param radius  of all points, unless they have their own
 TileBins bin_points(const PlaneArrays& points, cv::Size size, float radius);
 
 /// @brief Hands out one tile's entries nearest first without sorting what is never reached: entries

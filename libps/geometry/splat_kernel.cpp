@@ -84,7 +84,7 @@ inline int clamp_pixel(float x) {
 
 /// A bit for each block that the square around a splat touches.
 inline uint64_t touched(TilePoint p, Params params) {
-  const float x = p.u - params.x0, y = p.v - params.y0, r = params.radius;
+  const float x = p.u - params.x0, y = p.v - params.y0, r = p.radius;
   const int c0 = clamp_pixel(x - r) / kBlockWidth, c1 = clamp_pixel(x + r) / kBlockWidth;
   const int r0 = clamp_pixel(y - r) / kBlockHeight, r1 = clamp_pixel(y + r) / kBlockHeight;
   const uint64_t columns = (2ull << c1) - (1ull << c0);
@@ -96,16 +96,15 @@ inline uint64_t touched(TilePoint p, Params params) {
 }
 
 /// SPEC.md 4: alpha = 1 - sqrt(clamp(d^2 / r^2, 1e-3, 1)); a hit is strictly inside the radius.
-inline void blend_block(Gathered* block, int at, TilePoint p, Floats d2, float inverse_r2,
-                        Params params) {
+inline void blend_block(Gathered* block, int at, TilePoint p, Floats d2, Params params) {
   Floats& left = floats(block->left + at);
   Ints& count = ints(block->count + at);
-  const Lanes inside = less(d2, all(params.radius * params.radius));
+  const Lanes inside = less(d2, all(p.radius * p.radius));
   const Lanes hit =
       inside & ~less(left, all(params.enough)) & less(count, Ints{} + params.most_hits);
   // Wide blocks are mostly hit, and a branch that is hard to foretell costs more than the sums.
   if (kLanes < 16 && !any(hit)) return;
-  const Floats share = d2 * inverse_r2;
+  const Floats share = d2 * p.inverse_r2;
   const Floats low = select(less(share, all(1e-3f)), all(1e-3f), share);
   const Floats alpha = 1.0f - square_root(select(less(all(1.0f), low), all(1.0f), low));
   const Floats weight = select(hit, alpha * left, Floats{});
@@ -149,7 +148,6 @@ bool PS_JOIN(blend_, PS_ISA)(Tile* tile, const TilePoint* points, int count, con
       lane_y[pixel_index(x, y)] = params.y0 + static_cast<float>(y);
     }
   }
-  const float inverse_r2 = 1.0f / (params.radius * params.radius);
   for (int i = 0; i < count; ++i) {
     const TilePoint p = points[i];
     for (uint64_t blocks = live & touched(p, params); blocks; blocks &= blocks - 1) {
@@ -157,7 +155,7 @@ bool PS_JOIN(blend_, PS_ISA)(Tile* tile, const TilePoint* points, int count, con
       const Floats dx = lane_x + block_x[block] - p.u;
       const Floats dy = lane_y + block_y[block] - p.v;
       const int start = block_start(block);
-      blend_block(tile->blocks + start / 16, start % 16, p, dx * dx + dy * dy, inverse_r2, params);
+      blend_block(tile->blocks + start / 16, start % 16, p, dx * dx + dy * dy, params);
     }
   }
   tile->live = still_live(tile, live, params);

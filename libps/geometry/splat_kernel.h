@@ -21,6 +21,8 @@ constexpr int pixel_index(int x, int y) {
 struct TilePoint {
   float u, v, z;
   float r, g, b;
+  float radius;  ///< pixels
+  float inverse_r2;
 };
 
 /// What four by four pixels have gathered so far, in the order of pixel_index. A block's numbers
@@ -43,7 +45,6 @@ struct Tile {
 
 struct Params {
   float x0, y0;       ///< pixel of the tile's corner
-  float radius;       ///< pixels
   float enough;       ///< a pixel is done when `left` is below this
   int32_t most_hits;  ///< ... or when it has this many
 };

@@ -10,7 +10,7 @@
 #include "libps/core/error.h"
 #include "libps/core/image.h"
 #include "libps/eval/image_metrics.h"
-#include "libps/geometry/splat.h"
+#include "libps/scene/closed_splat.h"
 #include "libps/scene/thinner.h"
 
 namespace ps {
@@ -62,7 +62,7 @@ class Pictures {
 
  private:
   Splat draw(const Cloud& cloud, const PlannedView& view) const {
-    return splat(cloud, view.intrinsics, view.world_from_cam, options_);
+    return closed_splat(cloud, view.intrinsics, view.world_from_cam, options_);
   }
 
   SplatOptions options_;
@@ -76,8 +76,12 @@ Point point_of(const Sample& sample, const Cloud& cloud) {
   p.r = to_byte(sample.color.x() / 255);
   p.g = to_byte(sample.color.y() / 255);
   p.b = to_byte(sample.color.z() / 255);
-  // Points on top of each other have more area than they cover.
-  p.footprint = std::max(sample.footprint, std::min(std::sqrt(sample.area), 2 * sample.spread));
+  // Those that are spread unevenly need more than their share to cover all, but not beyond the end
+  // of a surface.
+  constexpr float kUneven = 1.5f;
+  const float to_end = sample.clear + sample.footprint / 2;
+  const float most = std::min(2.4f * sample.spread, to_end);
+  p.footprint = std::max(sample.footprint, std::min(kUneven * std::sqrt(sample.area), most));
   return p;
 }
 

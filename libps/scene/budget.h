@@ -26,14 +26,14 @@ struct PlannedView {
 struct BudgetOptions {
   double pixels = 0.5;      ///< points nearer to each other than this merge, whatever they show
   double spacing = 0.75;    ///< farthest that a point speaks for its like, in radii of the splats
-  double tolerance = 0.03;  ///< colours, as splats blur them, are one where they differ by no more
+  double tolerance = 0.01;  ///< colours, as splats show them, are one where they differ by no more
   /// Finds the tolerance at which no more points than this stay, nor much fewer; 0 = no target.
   std::size_t points = 0;
   /// Finds the greatest tolerance at which pictures of the thinned cloud are so near to those of
   /// the whole, dB: in the worst of up to eight of the planned views, taken evenly, over the pixels
   /// that the whole cloud hits; 0 = no target. Given both, `points` is kept to first.
   double psnr = 0;
-  float radius = 4;          ///< of the splats, pixels
+  float radius = 4;          ///< of the widest splats, pixels (closed_splat.h)
   bool drop_unseen = false;  ///< leave out what no planned view can see
 };
 
@@ -53,7 +53,7 @@ struct BudgetReport {
 /// @brief Thins an accumulated cloud (PixelSynth section 3.2) to what planned views need.
 ///
 /// A point that stays speaks for others around it: it keeps its place, view and origin, takes the
-/// mean of their colours, and its footprint grows to the side of a square of all their area. It
+/// mean of their colours, and its footprint grows until splats of it cover all their area. It
 /// reaches as far as the surface is flat, to within `pixels`, and of one colour; points where a
 /// surface ends, or that lie on none, speak for themselves. So outlines, edges and texture stay.
 /// Observed and outpainted points are never merged with each other, nor are two surfaces, unless

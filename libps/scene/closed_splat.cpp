@@ -2,26 +2,133 @@
 #include "libps/scene/closed_splat.h"
 
 #include <algorithm>
-#include <opencv2/core.hpp>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+#include "libps/core/error.h"
 
 namespace ps {
+namespace {
+
+constexpr float kNearer = 1.05f;  ///< in inverse depth; of what is another surface
+/// Pixels; through wider gaps of a surface what is behind is taken to be seen: a closing so wide
+/// would fill the corners of rooms.
+constexpr float kSeenThrough = 4;
+
+/// Inverse depth of the surfaces around gaps that are at most so wide, in these gaps; else 0.
+cv::Mat1f closed_depth(const cv::Mat1f& inverse, const Mask& hit, float radius) {
+  const int side = 2 * static_cast<int>(std::ceil(radius)) + 1;
+  const cv::Mat square = cv::Mat::ones(side, side, CV_8U);
+  cv::Mat1f closed;
+  cv::morphologyEx(inverse, closed, cv::MORPH_CLOSE, square);
+  if (radius > kSeenThrough) {
+    closed.setTo(0, hit);
+    return closed;
+  }
+  // A closed surface has no gaps, but what is seen between two of them: only points that stand
+  // apart, which an opening removes, hide what is behind them.
+  cv::Mat1f opened, apart = inverse.clone(), closed_apart;
+  cv::morphologyEx(inverse, opened, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
+  apart.setTo(0, inverse <= kNearer * opened);
+  cv::morphologyEx(apart, closed_apart, cv::MORPH_CLOSE, square);
+  closed_apart.copyTo(closed, hit);
+  closed.setTo(0, closed <= kNearer * inverse);
+  return closed;
+}
+
+/// Grows what is shown into gaps, ring by ring.
+class GapFiller {
+ public:
+  /// @param inverse  of what is shown; gets that of what is filled in
+  GapFiller(Splat* shown, cv::Mat1f* inverse) : shown_(*shown), inverse_(*inverse) {}
+
+  /// @param closed  of closed_depth()
+  void fill(const cv::Mat1f& closed) {
+    std::vector<cv::Point> gaps;
+    cv::findNonZero(closed > 0, gaps);
+    std::vector<Pixel> ring;
+    do {
+      ring.clear();
+      std::vector<cv::Point> left;
+      for (const cv::Point& gap : gaps) {
+        const Pixel pixel = mean_around(gap, closed(gap));
+        if (pixel.weight > 0) {
+          ring.push_back(pixel);
+        } else {
+          left.push_back(gap);
+        }
+      }
+      for (const Pixel& pixel : ring) take(pixel);
+      gaps.swap(left);
+    } while (!ring.empty());
+  }
+
+ private:
+  struct Pixel {
+    cv::Point at;
+    float weight = 0;
+    cv::Vec3f color;  ///< this and the others: sums
+    float inverse = 0;
+    float depth = 0;
+
+    void add(float share, const cv::Vec3f& other_color, float other_inverse, float other_depth) {
+      weight += share;
+      color += share * other_color;
+      inverse += share * other_inverse;
+      depth += share * other_depth;
+    }
+  };
+
+  /// Of the pixels around it that show the surface; of any, where only they can be told from
+  /// nothing.
+  Pixel mean_around(const cv::Point& at, float surface) const {
+    Pixel of_surface, of_any;
+    of_surface.at = of_any.at = at;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const cv::Point other(at.x + dx, at.y + dy);
+        if (!cv::Rect({}, inverse_.size()).contains(other) || !shown_.hit(other)) continue;
+        const float share = dx != 0 && dy != 0 ? .5f : 1.f, inverse = inverse_(other);
+        Pixel& pixel = inverse * kNearer < surface ? of_any : of_surface;
+        pixel.add(share, shown_.color(other), inverse, shown_.expected_depth(other));
+      }
+    }
+    return of_surface.weight > 0 || shown_.hit(at) ? of_surface : of_any;
+  }
+
+  void take(const Pixel& pixel) {
+    inverse_(pixel.at) = pixel.inverse / pixel.weight;
+    shown_.color(pixel.at) = pixel.color / pixel.weight;
+    shown_.expected_depth(pixel.at) = pixel.depth / pixel.weight;
+    shown_.first_depth(pixel.at) = pixel.weight / pixel.inverse;
+    shown_.hit(pixel.at) = 1;
+  }
+
+  Splat& shown_;
+  cv::Mat1f& inverse_;
+};
+
+}  // namespace
 
 Splat closed_splat(const PointsView& points, const Intrinsics& intrinsics,
-                   const Pose& world_from_cam, const SplatOptions& options, float widest) {
-  Splat result = splat(points, intrinsics, world_from_cam, options);
-  SplatOptions wider = options;
-  wider.count_hits = false;
-  while (wider.radius < widest && cv::countNonZero(result.hit == 0) > 0) {
-    wider.radius = std::min(2 * wider.radius, widest);
-    const Splat more = splat(points, intrinsics, world_from_cam, wider);
-    const Mask fresh = more.hit & (result.hit == 0);
-    more.color.copyTo(result.color, fresh);
-    more.first_depth.copyTo(result.first_depth, fresh);
-    more.expected_depth.copyTo(result.expected_depth, fresh);
-    more.hit.copyTo(result.hit, fresh);
-    result.missing = more.missing;
+                   const Pose& world_from_cam, const SplatOptions& options, float finest) {
+  if (!(finest > 0)) throw Error("finest splat", std::to_string(finest), "above 0 pixels");
+  SplatOptions level = options;
+  level.finest = std::min(options.radius, finest);
+  Splat shown = splat(points, intrinsics, world_from_cam, level);
+  if (level.finest == options.radius) return shown;
+  cv::Mat1f inverse = 1 / shown.first_depth;
+  inverse.setTo(0, shown.hit == 0);
+  GapFiller filler(&shown, &inverse);
+  for (float radius = level.finest; radius < options.radius;) {
+    radius = std::min(2 * radius, options.radius);
+    filler.fill(closed_depth(inverse, shown.hit, radius));
   }
-  return result;
+  cv::dilate(shown.hit == 0, shown.missing, cv::Mat1b(options.dilation, options.dilation, 1));
+  shown.missing &= 1;
+  return shown;
 }
 
 }  // namespace ps

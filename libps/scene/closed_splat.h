@@ -5,23 +5,32 @@
 
 namespace ps {
 
-/// @brief Splats a cloud so that its gaps close: what no point hits at one radius is taken from the
-/// picture of twice that radius, up to `widest`. Where the cloud is dense it is as sharp as narrow
-/// splats, where it is sparse as whole as wide ones.
+constexpr float kFinestSplat = 1;  ///< pixels; of splats that show a cloud as sharp as it is
+
+/// @brief Splats a cloud with splats as wide as what each point stands for, and closes the gaps
+/// that are left. Where the cloud is dense it is as sharp as narrow splats, which keep slanted
+/// surfaces in their place; where it is sparse, as whole as wide ones; and surfaces do not grow
+/// beyond their outlines.
 ///
-/// A pyramid as of Grossman and Dally, "Point sample rendering" (1998), with the splats of
-/// options in place of halved images. `missing` is what even the widest does not hit; `count` and
-/// `nearest` are those of the first radius.
-/// @param options  of the first, narrowest splat; see Splat for what comes back
-/// @param widest   pixels, up to 64
-/// Throws ps::Error as splat() does.
+/// Radii follow the footprints (SplatOptions::finest). A gap is where a closing of inverse depth by
+/// squares, each twice as wide, is nearer than what is shown: the surface around it is nearer than
+/// what is seen through it, or nothing is seen. It takes the mean of that surface's pixels beside
+/// it, ring by ring. After Grossman and Dally, "Point sample rendering" (1998), which closes gaps
+/// by a pyramid.
+/// @param options  radius is that of the widest splats, and how wide gaps are that are closed; see
+/// Splat for what comes back. `missing` is of what no gap was closed over; `count` and `nearest`
+/// are of the splats
+/// @param finest   pixels; of the narrowest. From options.radius on, this is splat()
+/// Throws ps::Error as splat() does, also of `finest`.
 Splat closed_splat(const PointsView& points, const Intrinsics& intrinsics,
-                   const Pose& world_from_cam, const SplatOptions& options, float widest);
+                   const Pose& world_from_cam, const SplatOptions& options,
+                   float finest = kFinestSplat);
 
 template <typename PointT>
 Splat closed_splat(const pcl::PointCloud<PointT>& cloud, const Intrinsics& intrinsics,
-                   const Pose& world_from_cam, const SplatOptions& options, float widest) {
-  return closed_splat(points_view(cloud), intrinsics, world_from_cam, options, widest);
+                   const Pose& world_from_cam, const SplatOptions& options,
+                   float finest = kFinestSplat) {
+  return closed_splat(points_view(cloud), intrinsics, world_from_cam, options, finest);
 }
 
 }  // namespace ps

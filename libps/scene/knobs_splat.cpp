@@ -8,8 +8,8 @@
 #include "libps/eval/image_metrics.h"
 #include "libps/eval/pairs.h"
 #include "libps/geometry/point.h"
-#include "libps/geometry/splat.h"
 #include "libps/scene/budget.h"
+#include "libps/scene/closed_splat.h"
 #include "libps/scene/fuse.h"
 #include "libps/scene/knob_clock.h"
 #include "libps/scene/knobs.h"
@@ -24,8 +24,8 @@ constexpr int kRepeats = 5;
 struct FusedSample {
   explicit FusedSample(const KnobSample& sample);
 
-  /// Splats the target in the share of its size.
-  KnobTrial draw(const Cloud& cloud, SplatOptions options, double size = 1) const;
+  /// Splats the target in the share of its size, as closed_splat() does.
+  KnobTrial draw(const Cloud& cloud, SplatOptions options, float finest, double size = 1) const;
 
   View target;
   std::vector<PlannedView> cameras;  ///< of all views, the target's first
@@ -45,7 +45,8 @@ FusedSample::FusedSample(const KnobSample& sample) : target(sample.target) {
   cloud = fuse({views.size(), [&](std::size_t i) { return views[i]; }});
 }
 
-KnobTrial FusedSample::draw(const Cloud& points, SplatOptions options, double size) const {
+KnobTrial FusedSample::draw(const Cloud& points, SplatOptions options, float finest,
+                            double size) const {
   options.renormalise = true;
   const auto side = [&](int length) {
     return std::max(1, static_cast<int>(std::lround(length * size)));
@@ -54,7 +55,8 @@ KnobTrial FusedSample::draw(const Cloud& points, SplatOptions options, double si
       resized(target.intrinsics, side(target.intrinsics.width), side(target.intrinsics.height));
   KnobTrial trial;
   Splat drawn;
-  trial.seconds = seconds_of([&] { drawn = splat(points, lens, target.world_from_cam, options); });
+  trial.seconds = seconds_of(
+      [&] { drawn = closed_splat(points, lens, target.world_from_cam, options, finest); });
   drawn.color.setTo(cv::Scalar::all(0.5), drawn.hit == 0);
   cv::resize(drawn.color, trial.picture, target.color.size(), 0, 0,
              size > 1 ? cv::INTER_AREA : cv::INTER_CUBIC);
@@ -64,19 +66,21 @@ KnobTrial FusedSample::draw(const Cloud& points, SplatOptions options, double si
 
 std::vector<ScoreColumn> psnr_column() { return {{"PSNR where known", "dB", true}}; }
 
-/// A knob that changes options of splats.
-template <class Set>
-Knob splat_knob(Knob knob, const std::vector<double>& values, double standard, const Set& set) {
+/// How splats are drawn.
+struct Drawing {
+  SplatOptions options;
+  float finest = kFinestSplat;
+};
+
+/// A knob that changes how splats are drawn; its settings are named already.
+Knob splat_knob(Knob knob, const std::vector<Drawing>& drawings) {
   knob.timed = kTimed;
   knob.scores = psnr_column();
   knob.repeats = kRepeats;
-  for (const double value : values) knob.settings.push_back({in_digits(value), value == standard});
   knob.prepare = [=](const KnobSample& sample) {
     const auto fused = std::make_shared<FusedSample>(sample);
     return KnobBench{sample.target.color, [=](std::size_t s) {
-                       SplatOptions options;
-                       set(options, values[s]);
-                       return fused->draw(fused->cloud, options);
+                       return fused->draw(fused->cloud, drawings[s].options, drawings[s].finest);
                      }};
   };
   return knob;
@@ -86,20 +90,39 @@ Knob splat_knob(Knob knob, const std::vector<double>& values, double standard, c
 
 Knob radius_knob() {
   Knob knob = {"radius",
-               "Radius of splats, pixels: the view that was left out, from a fused cloud."};
-  return splat_knob(
-      std::move(knob), {0.5, 1, 1.5, 2, 3, 4, 6, 8}, SplatOptions().radius,
-      [](SplatOptions& options, double value) { options.radius = static_cast<float>(value); });
+               "Radius of splats, pixels, and where two are told, of the narrowest, whose gaps "
+               "wider ones close: the view that was left out, from a fused cloud."};
+  std::vector<Drawing> drawings;
+  const auto add = [&](const std::string& name, float finest, float radius) {
+    Drawing drawing;
+    const bool standard = finest == drawing.finest && radius == drawing.options.radius;
+    drawing.options.radius = radius;
+    drawing.finest = finest;
+    drawings.push_back(drawing);
+    knob.settings.push_back({name, standard});
+  };
+  for (const float radius : {0.5F, 1.F, 1.5F, 2.F, 3.F, 4.F, 8.F}) {
+    add(in_digits(radius), radius, radius);
+  }
+  const float widest = SplatOptions().radius;
+  for (const float finest : {0.7F, 1.F, 1.5F}) {
+    add(in_digits(finest) + " to " + in_digits(widest), finest, widest);
+  }
+  return splat_knob(std::move(knob), drawings);
 }
 
 Knob points_per_pixel_knob() {
   Knob knob = {"points-per-pixel",
                "Nearest so many points of a pixel that count: the view that was left out, from a "
                "fused cloud."};
-  return splat_knob(std::move(knob), {1, 2, 4, 8, 16, 32, 64, 128}, SplatOptions().points_per_pixel,
-                    [](SplatOptions& options, double value) {
-                      options.points_per_pixel = static_cast<int>(value);
-                    });
+  std::vector<Drawing> drawings;
+  for (const int points : {1, 2, 4, 8, 16, 32, 64, 128}) {
+    Drawing drawing;
+    knob.settings.push_back({in_digits(points), points == drawing.options.points_per_pixel});
+    drawing.options.points_per_pixel = points;
+    drawings.push_back(drawing);
+  }
+  return splat_knob(std::move(knob), drawings);
 }
 
 Knob budget_knob() {
@@ -132,7 +155,7 @@ Knob budget_knob() {
       clouds->push_back(thinned(fused->cloud, fused->cameras, options));
     }
     return KnobBench{sample.target.color, [=](std::size_t s) {
-                       KnobTrial trial = fused->draw((*clouds)[s], {});
+                       KnobTrial trial = fused->draw((*clouds)[s], {}, kFinestSplat);
                        trial.scores.push_back(static_cast<double>((*clouds)[s].size()));
                        return trial;
                      }};
@@ -155,8 +178,9 @@ Knob image_size_knob() {
   }
   knob.prepare = [shares](const KnobSample& sample) {
     const auto fused = std::make_shared<FusedSample>(sample);
-    return KnobBench{sample.target.color,
-                     [=](std::size_t s) { return fused->draw(fused->cloud, {}, shares[s]); }};
+    return KnobBench{sample.target.color, [=](std::size_t s) {
+                       return fused->draw(fused->cloud, {}, kFinestSplat, shares[s]);
+                     }};
   };
   return knob;
 }

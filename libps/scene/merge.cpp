@@ -79,10 +79,13 @@ void take(Sample* speaker, const Sample& other) {
   speaker->weight += other.weight;
   speaker->color += (other.color - speaker->color) * (other.weight / speaker->weight);
   speaker->pixel = std::min(speaker->pixel, other.pixel);
-  speaker->area += other.area;
+  const Eigen::Vector3f offset = other.position - speaker->position;
+  const float middle = (speaker->footprint + other.footprint) / 2;
+  // What is nearer than its footprints adds only what the other does not cover.
+  const float share = offset.squaredNorm() / std::max(middle * middle, 1e-20f);
+  speaker->area += std::min(1.f, share) * other.area;
   speaker->footprint = std::max(speaker->footprint, other.footprint);
-  speaker->spread =
-      std::max(speaker->spread, (other.position - speaker->position).norm() + other.spread);
+  speaker->spread = std::max(speaker->spread, offset.norm() + other.spread);
 }
 
 }  // namespace

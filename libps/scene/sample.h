@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "libps/geometry/point.h"
@@ -14,12 +15,13 @@ namespace ps {
 struct Sample {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< world, metres
   Eigen::Vector3f color = Eigen::Vector3f::Zero();     ///< mean r, g, b, 0 to 255
-  float pixel = 0;          ///< metres that a pixel covers there, where it covers least
-  float weight = 1;         ///< how many points it speaks for
-  float area = 0;           ///< square metres: the sum of the squares of their footprints
-  float footprint = 0;      ///< metres, the greatest of theirs
-  float spread = 0;         ///< metres to the farthest of them
-  std::uint32_t point = 0;  ///< its number in the cloud
+  float pixel = 0;      ///< metres that a pixel covers there, where it covers least
+  float weight = 1;     ///< how many points it speaks for
+  float area = 0;       ///< square metres: about what their footprints cover together
+  float footprint = 0;  ///< metres, the greatest of theirs
+  float spread = 0;     ///< metres to the farthest of them
+  float clear = std::numeric_limits<float>::infinity();  ///< metres, to where surfaces end or bend
+  std::uint32_t point = 0;                               ///< its number in the cloud
   std::uint8_t origin = 0;
 };
 

@@ -32,8 +32,9 @@ Image draw(const std::string& method, const Cloud& cloud, const View& view, floa
   options.renormalise = true;
   options.radius = radius;
   if (method == kClosed) {
-    options.radius = std::min(kDetail * radius / kRadius, kWidest);
-    return closed_splat(cloud, view.intrinsics, view.world_from_cam, options, kWidest).color;
+    options.radius = kWidest;
+    const float finest = kDetail * radius / kRadius;
+    return closed_splat(cloud, view.intrinsics, view.world_from_cam, options, finest).color;
   }
   if (method == kPublished) {
     options.radius = 4 * radius / kRadius;

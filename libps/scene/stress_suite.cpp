@@ -81,8 +81,8 @@ Image picture_of(const std::string& method, const Cloud& cloud, const View& trut
   SplatOptions options;
   options.renormalise = true;
   if (method == kOurs) {
-    options.radius = kDetail;
-    return closed_splat(cloud, truth.intrinsics, truth.world_from_cam, options, kWidest).color;
+    options.radius = kWidest;
+    return closed_splat(cloud, truth.intrinsics, truth.world_from_cam, options, kDetail).color;
   }
   options.radius = kRadius;
   return splat(cloud, truth.intrinsics, truth.world_from_cam, options).color;

@@ -12,9 +12,6 @@ namespace {
 
 constexpr std::size_t kCellsAtATime = 8;
 constexpr float kNoDirection = 0.3f;  ///< pixels; what is nearer tells nothing of directions
-/// Share of the splats' radius that colours are blurred over, in judging: of the points that hit a
-/// pixel the nearest few hide the others, so pictures are sharper than a mean of all.
-constexpr float kSharp = 0.5f;
 /// A surface ends where so many of eight directions in a row have no sample: a straight outline
 /// leaves three or four, and a hole narrower than a splat none.
 constexpr int kEmptyAtEnd = 3;
@@ -113,13 +110,14 @@ class Looker {
     std::size_t count = 0;
     const Neighbour* near = around.near(s, options_.radius * s.pixel, &count);
     const float per_metre = 1 / s.pixel, per_radius = per_metre / options_.radius;
+    const float per_finest = per_metre / options_.finest;
     float sum = 0, color_sum = 0;
     Eigen::Vector3f color = Eigen::Vector3f::Zero(), mean = Eigen::Vector3f::Zero();
     Eigen::Matrix3f square = Eigen::Matrix3f::Zero();
     for (const Neighbour* n = near; n != near + count; ++n) {
       const Sample& other = samples_[n->sample];
-      const float share = n->distance * per_radius;
-      const float weight = 1 - share, color_weight = std::max(0.f, kSharp - share);
+      const float weight = 1 - n->distance * per_radius;
+      const float color_weight = std::max(0.f, 1 - n->distance * per_finest);
       const Eigen::Vector3f offset = (other.position - s.position) * per_metre;
       const Eigen::Vector3f weighted = weight * offset;
       sum += weight;
@@ -156,6 +154,7 @@ class Looker {
     auto& difference = result.difference;
     if (here.apart) {
       difference.fill(Surroundings::kApart);
+      result.clear = 0;
       return result;
     }
     const float reach = options_.reach * s.pixel, flat = options_.flat * s.pixel;
@@ -163,8 +162,9 @@ class Looker {
     const Neighbour* near = around.near(s, reach, &count);
     for (const Neighbour* n = near; n != near + count; ++n) {
       const Shown& there = shown_[n->sample];
-      if (there.apart) continue;  // it speaks for itself, whatever is around it
       const bool bent = std::fabs(here.normal.dot(there.position - here.position)) > flat;
+      if (there.apart || bent) result.clear = std::min(result.clear, n->distance);
+      if (there.apart) continue;  // it speaks for itself, whatever is around it
       const float most = (there.color - here.color).cwiseAbs().maxCoeff();
       const std::uint8_t one =
           bent ? Surroundings::kApart : static_cast<std::uint8_t>(std::ceil(std::min(254.f, most)));

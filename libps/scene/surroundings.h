@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "libps/scene/sample_grid.h"
@@ -12,11 +13,12 @@ namespace ps {
 
 /// @brief For each step of distance from a sample, the greatest difference between the colours that
 /// splats show at it and at any sample up to there: 0 to 254, or kApart where the surface bends.
-/// All kApart for a sample where a surface ends, or that is on none.
+/// All kApart for a sample where a surface ends, or that is on none, and no difference counts to it.
 struct Surroundings {
   static constexpr int kSteps = 8;
   static constexpr std::uint8_t kApart = 255;
   std::array<std::uint8_t, kSteps> difference = {};
+  float clear = std::numeric_limits<float>::infinity();  ///< metres to the nearest that is kApart
 
   /// @return how many steps around it differ by no more than the tolerance
   int alike(int tolerance) const {
@@ -28,7 +30,8 @@ struct Surroundings {
 
 /// What to look at; all in pixels of each sample.
 struct LookOptions {
-  float radius = 4;   ///< of splats: what is averaged over, in judging; at most the grid's pixels
+  float radius = 4;   ///< of the widest splats: what planes are laid through; at most the grid's
+  float finest = 1;   ///< of the narrowest splats: what colours are averaged over
   float reach = 3;    ///< how far to look; at most the radius
   float flat = 0.5f;  ///< how far a surface may be off its plane
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "libps/scene/closed_splat.h"
 #include "libps/scene/merge.h"
 
 namespace ps {
@@ -13,7 +14,7 @@ namespace {
 constexpr float kWidestJudged = 8;       ///< pixels; wider splats are judged as if so wide
 constexpr float kFinestCell = 1.f / 16;  ///< pixels
 constexpr std::size_t kCrowd = 2;        ///< samples in a cell that are not too many
-constexpr int kRounds = 12;              ///< of a search, at most
+constexpr int kRounds = 16;              ///< of a search, at most
 constexpr double kNearEnough = 0.97;     ///< of the points asked for, to end a search
 constexpr double kMostPixels = 4096;     ///< within which a search merges across edges
 
@@ -66,7 +67,10 @@ Thinner::Thinner(const std::vector<Sample>& samples, const BudgetOptions& option
       spacing_(static_cast<float>(options.spacing) * radius_),
       samples_(without_crowds(samples, pixels_)),
       grid_(samples_, std::max(radius_, pixels_)),
-      surroundings_(look_around(samples_, grid_, {radius_, spacing_, pixels_})) {}
+      surroundings_(look_around(samples_, grid_,
+                                {radius_, std::min(radius_, kFinestSplat), spacing_, pixels_})) {
+  for (std::size_t i = 0; i < samples_.size(); ++i) samples_[i].clear = surroundings_[i].clear;
+}
 
 std::vector<Sample> Thinner::at(double tolerance) const {
   std::vector<float> reach(samples_.size());

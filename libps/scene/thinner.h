@@ -29,7 +29,7 @@ class Thinner {
   const float pixels_;   ///< BudgetOptions::pixels
   const float radius_;   ///< pixels, of splats
   const float spacing_;  ///< pixels
-  const std::vector<Sample> samples_;
+  std::vector<Sample> samples_;
   const SampleGrid grid_;
   const std::vector<Surroundings> surroundings_;
 };

@@ -53,7 +53,8 @@ class Outpainting : public ViewMethod {
     constexpr double kStep = 15;  // degrees
     SceneBuilder scene(networks_, lens, options_.scene);
     scene.observe(input, 0);
-    const Mask seen = cloud_picture(scene.cloud(), lens, world_from_cam, options_.renderer).shown;
+    const Mask seen =
+        cloud_picture(scene.cloud(), lens, world_from_cam, options_.renderer).splat.hit;
     std::vector<Pose> poses = {world_from_cam};
     if (way_ == Way::in_steps) poses = steps_to(input.world_from_cam, world_from_cam, kStep);
     std::uint16_t number = 0;
@@ -82,7 +83,7 @@ class Refining : public ViewMethod {
 
   MethodView show(const View& input, const Intrinsics& lens, const Pose& world_from_cam) override {
     const RenderedView view = renderer_.render(cloud_of(input, cloud_), lens, world_from_cam);
-    return {view.color, view.shown};
+    return {view.color, view.splat.hit};
   }
 
  private:
@@ -97,7 +98,7 @@ class Filling : public ViewMethod {
   MethodView show(const View& input, const Intrinsics& lens, const Pose& world_from_cam) override {
     const Cloud cloud = cloud_of(input, options_.scene.cloud);
     const RenderedView view = cloud_picture(cloud, lens, world_from_cam, options_.renderer);
-    return {filled(view.color, view.shown, fill_), view.shown};
+    return {filled(view.color, view.splat.hit, fill_), view.splat.hit};
   }
 
  private:

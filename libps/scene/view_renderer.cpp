@@ -31,40 +31,19 @@ cv::Mat blurred(const cv::Mat& image, double sigma) {
   return out;
 }
 
-/// Takes wider splats where there are gaps that they close: where a nearer surface is all round, or
-/// the cloud is, and no narrow splat.
-/// @param inverse  of depth; 0 where nothing is shown
-void close_gaps(const Splat& wider, float radius, RenderedView* view, cv::Mat1f* inverse) {
-  constexpr float kNearer = 1.05f;  // in 1 / z
-  const int side = 2 * static_cast<int>(std::ceil(radius)) + 1;
-  const cv::Mat square = cv::Mat::ones(side, side, CV_8U);
-  cv::Mat1f opened, apart = inverse->clone(), closed, closed_apart;
-  // A closed surface has no gaps, but what is seen between two of them: only points that stand
-  // apart, which an opening removes, hide what is behind them.
-  cv::morphologyEx(*inverse, opened, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
-  apart.setTo(0, *inverse <= kNearer * opened);
-  cv::morphologyEx(apart, closed_apart, cv::MORPH_CLOSE, square);
-  cv::morphologyEx(*inverse, closed, cv::MORPH_CLOSE, square);
-  closed_apart.copyTo(closed, view->shown);
-  const Mask gaps = (closed > kNearer * *inverse) & (wider.hit != 0);
-  wider.color.copyTo(view->color, gaps);
-  closed.copyTo(*inverse, gaps);
-  view->shown.setTo(1, gaps);
-}
-
 /// The cloud where it is shown; elsewhere `base`, which near the seam is moved towards the colours
 /// there.
-Image completed(const RenderedView& view, const Image& base, double sigma) {
+Image completed(const Splat& shown, const Image& base, double sigma) {
   cv::Mat1f seen;
-  view.shown.convertTo(seen, CV_32F);
-  Image difference = view.color - base;
-  difference.setTo(cv::Scalar::all(0), view.shown == 0);
+  shown.hit.convertTo(seen, CV_32F);
+  Image difference = shown.color - base;
+  difference.setTo(cv::Scalar::all(0), shown.hit == 0);
   const cv::Mat1f share = blurred(seen, sigma);
   const Image moved = blurred(difference, sigma);
-  Image out = view.color.clone();
+  Image out = shown.color.clone();
   for (int y = 0; y < out.rows; ++y) {
     for (int x = 0; x < out.cols; ++x) {
-      if (view.shown(y, x)) continue;
+      if (shown.hit(y, x)) continue;
       // At the seam the share is one half: all of the mean difference there.
       const float weight = std::min(1.f, 2 * share(y, x)) / std::max(share(y, x), 1e-4f);
       for (int c = 0; c < 3; ++c) {
@@ -79,7 +58,8 @@ Image completed(const RenderedView& view, const Image& base, double sigma) {
 
 ViewRenderer::ViewRenderer(const models::Refiner* refiner, const ViewRendererOptions& options)
     : refiner_(refiner), options_(options) {
-  if (refiner_ != nullptr) noise_ = noise_of(*refiner_, options_.seed);
+  if (refiner_ == nullptr) return;
+  noise_ = noise_of(*refiner_, options_.seed);
   options_.splat.background = kGrey;
 }
 
@@ -102,45 +82,25 @@ Image ViewRenderer::refined(const Splat& seen) {
 
 RenderedView cloud_picture(const pcl::PointCloud<Point>& cloud, const Intrinsics& lens,
                            const Pose& world_from_cam, const ViewRendererOptions& options) {
-  SplatOptions fine = options.splat;
-  fine.background = kGrey;
-  fine.renormalise = true;
-  const float radius = fine.radius;
-  fine.radius = std::min(options.detail_radius, radius);
+  SplatOptions whole = options.splat;
+  whole.renormalise = true;
   RenderedView view;
-  view.splat = splat(cloud, lens, world_from_cam, fine);
-  view.color = view.splat.color.clone();
-  view.shown = view.splat.hit.clone();
-  cv::Mat1f inverse = 1 / view.splat.first_depth;
-  inverse.setTo(0, view.splat.hit == 0);
-  while (fine.radius < radius) {
-    fine.radius = std::min(2 * fine.radius, radius);
-    close_gaps(splat(cloud, lens, world_from_cam, fine), fine.radius, &view, &inverse);
-  }
-  view.missing_share = cv::mean(view.shown == 0)[0] / 255;
+  view.splat = closed_splat(cloud, lens, world_from_cam, whole, options.finest);
+  view.color = view.splat.color;
+  view.missing_share = cv::mean(view.splat.hit == 0)[0] / 255;
   return view;
 }
 
 RenderedView ViewRenderer::render(const pcl::PointCloud<Point>& cloud, const Intrinsics& lens,
                                   const Pose& world_from_cam) {
-  if (refiner_ == nullptr) {
-    SplatOptions bare = options_.splat;
-    bare.renormalise = true;
-    bare.background = {0, 0, 0};
-    RenderedView view;
-    view.splat = splat(cloud, lens, world_from_cam, bare);
-    view.color = view.splat.color;
-    view.shown = view.splat.hit;
-    view.missing_share = cv::mean(view.splat.hit == 0)[0] / 255;
-    return view;
-  }
-  const Intrinsics seen = network_lens(lens);
   RenderedView view = cloud_picture(cloud, lens, world_from_cam, options_);
-  if (view.missing_share == 0 && !options_.as_published) return view;
+  if (refiner_ == nullptr || (view.missing_share == 0 && !options_.as_published)) return view;
+  const Intrinsics seen = network_lens(lens);
   const Splat coarse = splat(cloud, seen, world_from_cam, options_.splat);
   const Image base = resampled(refined(coarse), seen, lens);
   constexpr double kSeam = 4;  // of the networks' pixels
-  view.color = options_.as_published ? base : completed(view, base, kSeam * lens.fx / seen.fx);
+  view.color =
+      options_.as_published ? base : completed(view.splat, base, kSeam * lens.fx / seen.fx);
   return view;
 }
 

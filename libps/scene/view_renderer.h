@@ -8,6 +8,7 @@
 #include "libps/geometry/camera.h"
 #include "libps/geometry/splat.h"
 #include "libps/models/refiner.h"
+#include "libps/scene/closed_splat.h"
 
 namespace pcl {
 template <typename PointT>
@@ -19,36 +20,32 @@ namespace ps {
 struct Point;
 
 struct ViewRendererOptions {
-  SplatOptions splat;         ///< what the refiner is given; its background is set to grey
-  float detail_radius = 1;    ///< pixels of the view; of the splats that show the cloud
-  bool as_published = false;  ///< the refiner's picture alone
-  std::uint64_t seed = 0;     ///< of the refiner's noise, which is the same for all views
+  SplatOptions splat;           ///< what the refiner is given, its background then set to grey
+  float finest = kFinestSplat;  ///< pixels of the view; of the splats that show the cloud
+  bool as_published = false;    ///< the refiner's picture alone
+  std::uint64_t seed = 0;       ///< of the refiner's noise, which is the same for all views
 };
 
 struct RenderedView {
   Image color;               ///< [0,1], of the lens's size
-  Splat splat;               ///< of the cloud into this lens, with detail_radius
-  Mask shown;                ///< 1 where the cloud itself is shown, its closed gaps included
+  Splat splat;               ///< of the cloud into this lens (closed_splat.h)
   double missing_share = 0;  ///< of its pixels: what the refiner alone had to fill in
 };
 
-/// @brief What of a view the cloud itself shows, as ViewRenderer does: `color` is meant only where
-/// `shown` is. Throws ps::Error when lens or pose are unsound.
+/// @brief What of a view the cloud itself shows: `splat`, and its colours. Throws ps::Error when
+/// lens or pose are unsound.
 RenderedView cloud_picture(const pcl::PointCloud<Point>& cloud, const Intrinsics& lens,
                            const Pose& world_from_cam, const ViewRendererOptions& options = {});
 
 /// @brief Any view of a scene's cloud: splat and refinement (SPEC.md 1).
 ///
-/// Where the cloud is seen, it is shown as it is, by narrow splats at the view's full size: a wide
-/// splat shows slanted surfaces some pixels beside their place, as the nearest of its points wins,
-/// and a network repaints what is known. Gaps between points, where a surface is so near that
-/// narrow splats do not close it, are found by a closing of inverse depth and filled by wide
-/// splats. What is missing is the refiner's, which sees 256 pixels along the short side, moved
-/// towards the colours at the seam. Not for two threads at once.
+/// Where the cloud is seen, it is shown as it is, at the view's full size: a wide splat shows
+/// slanted surfaces some pixels beside their place, as the nearest of its points wins, and a
+/// network repaints what is known. What is missing is the refiner's, which sees 256 pixels along
+/// the short side, moved towards the colours at the seam. Not for two threads at once.
 class ViewRenderer {
  public:
-  /// @param refiner  must outlive this; null = no network: the splat alone, renormalised, of
-  /// radius options.splat.radius
+  /// @param refiner  must outlive this; null = no network: what the cloud shows, and the background
   explicit ViewRenderer(const models::Refiner* refiner, const ViewRendererOptions& options = {});
 
   /// Throws ps::Error when lens or pose are unsound, or the refiner gives what is not finite.

@@ -15,8 +15,8 @@
 #include "io/rgbd_folder.h"
 #include "libps/core/parallel.h"
 #include "libps/eval/image_metrics.h"
-#include "libps/geometry/splat.h"
 #include "libps/scene/budget.h"
+#include "libps/scene/closed_splat.h"
 #include "libps/scene/fuse.h"
 
 namespace ps {
@@ -45,7 +45,7 @@ struct Shot {
 Splat draw(const Cloud& cloud, const PlannedView& view) {
   SplatOptions options;
   options.renormalise = true;
-  return splat(cloud, view.intrinsics, view.world_from_cam, options);
+  return closed_splat(cloud, view.intrinsics, view.world_from_cam, options);
 }
 
 /// Means of cubes: what pcl::VoxelGrid does, without its limit on their number.

@@ -107,10 +107,11 @@ TEST(Splat, every_vector_width_gives_the_same_bytes) {
   std::uniform_real_distribution<float> unit(0, 1);
   std::vector<TilePoint> points(700);
   for (TilePoint& p : points) {
-    p = {unit(random) * 24 + 28, unit(random) * 24 + 44, 1 + unit(random),
-         unit(random),           unit(random),           unit(random)};
+    const float radius = 1 + 4 * unit(random);
+    p = {unit(random) * 24 + 28, unit(random) * 24 + 44, 1 + unit(random), unit(random),
+         unit(random),           unit(random),           radius,           1 / (radius * radius)};
   }
-  const Params params = {32, 48, 4, 1.0f / 1024, 100};
+  const Params params = {32, 48, 1.0f / 1024, 100};
   std::vector<Tile> tiles(widths.size(), Tile{});
   for (std::size_t w = 0; w < widths.size(); ++w) {
     for (Gathered& block : tiles[w].blocks) {
@@ -121,6 +122,48 @@ TEST(Splat, every_vector_width_gives_the_same_bytes) {
     EXPECT_EQ(std::memcmp(tiles[w].blocks, tiles[0].blocks, sizeof tiles[0].blocks), 0);
     EXPECT_GT(tiles[w].blocks[5].count[3], 0);
   }
+}
+
+TEST(Splat, points_may_have_radii_of_their_footprints) {
+  const Intrinsics camera{90, 50, 100, 100, 44.5, 24.5};
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> unit(0, 1);
+  Cloud cloud;
+  for (int i = 0; i < 25; ++i) {
+    Point p;
+    p.z = 1 + 2 * unit(random);
+    p.x = (unit(random) - .5f) * .9f * p.z;
+    p.y = (unit(random) - .5f) * .5f * p.z;
+    p.footprint = .12f * unit(random) * unit(random);
+    cloud.push_back(p);
+  }
+  cloud[3].footprint = 0;
+  cloud[4].footprint = std::numeric_limits<float>::quiet_NaN();
+  SplatOptions options;
+  options.radius = 5;
+  options.finest = 1.5f;
+  options.footprints = 2;
+  const Splat drawn = splat(cloud, camera, Pose::Identity(), options);
+  int widest = 0, narrowest = 0;
+  for (int y = 0; y < camera.height; ++y) {
+    for (int x = 0; x < camera.width; ++x) {
+      float nearest = 0;
+      for (const Point& p : cloud) {
+        const float wanted = 2 * p.footprint * 100 / p.z;
+        const float radius = wanted > 1.5f ? std::min(wanted, 5.f) : 1.5f;
+        const float u = 100 * p.x / p.z + 44.5f, v = 100 * p.y / p.z + 24.5f;
+        const float dx = static_cast<float>(x) - u, dy = static_cast<float>(y) - v;
+        if (dx * dx + dy * dy >= radius * radius) continue;
+        widest += radius == 5;
+        narrowest += radius == 1.5f;
+        if (nearest == 0 || p.z < nearest) nearest = p.z;
+      }
+      EXPECT_EQ(drawn.hit(y, x) != 0, nearest > 0) << x << " " << y;
+      EXPECT_NEAR(drawn.first_depth(y, x), nearest, 1e-5);
+    }
+  }
+  EXPECT_GT(widest, 100);
+  EXPECT_GT(narrowest, 20);
 }
 
 TEST(Splat, bytes_do_not_depend_on_threads) {
@@ -206,6 +249,9 @@ TEST(Splat, unsound_options_are_refused) {
   EXPECT_THROW(with([](SplatOptions& o) { o.radius = 0; }), Error);
   EXPECT_THROW(with([](SplatOptions& o) { o.radius = std::nanf(""); }), Error);
   EXPECT_THROW(with([](SplatOptions& o) { o.radius = 65; }), Error);
+  EXPECT_THROW(with([](SplatOptions& o) { o.finest = -1; }), Error);
+  EXPECT_THROW(with([](SplatOptions& o) { o.finest = std::nanf(""); }), Error);
+  EXPECT_THROW(with([](SplatOptions& o) { o.footprints = -1; }), Error);
   EXPECT_THROW(with([](SplatOptions& o) { o.dilation = 4; }), Error);
   EXPECT_THROW(with([](SplatOptions& o) { o.points_per_pixel = 0; }), Error);
   EXPECT_THROW(splat_plane({}, {0, 8}), Error);

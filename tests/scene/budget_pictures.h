@@ -9,8 +9,8 @@
 #include "libps/core/random.h"
 #include "libps/eval/image_metrics.h"
 #include "libps/geometry/lift.h"
-#include "libps/geometry/splat.h"
 #include "libps/scene/budget.h"
+#include "libps/scene/closed_splat.h"
 
 namespace ps {
 
@@ -65,7 +65,7 @@ inline cv::Vec3f half_and_half(int x, int y) { return x < 80 ? smooth(x, y) : ch
 inline Splat draw(const Cloud& cloud, const Pose& pose = Pose::Identity()) {
   SplatOptions options;
   options.renormalise = true;
-  return splat(cloud, kCamera, pose, options);
+  return closed_splat(cloud, kCamera, pose, options);
 }
 
 /// dB, where the whole cloud hits.

@@ -15,7 +15,7 @@ namespace {
 
 PlanePoints plane_points(const Cloud& cloud, const Intrinsics& intrinsics, const Pose& pose) {
   const SplatOptions defaults;
-  const PlaneArrays plane = project_points(points_view(cloud), intrinsics, pose, defaults.near);
+  const PlaneArrays plane = project_points(points_view(cloud), intrinsics, pose, defaults);
   PlanePoints points = {plane.u, plane.v, plane.z, {}};
   for (const Point& p : cloud) points.color.emplace_back(p.r / 255.f, p.g / 255.f, p.b / 255.f);
   return points;
