@@ -108,7 +108,31 @@ inline int lead(const Rays& r) {
   return -1;
 }
 
+/// Directions that are nearly 0 along an axis run along it, very far.
+inline float inverse_of(float d) {
+  const float size = d < 0 ? -d : d;
+  return 1 / (size > 1e-12f ? d : 1e-12f);
+}
+
 }  // namespace
+
+void PS_JOIN(enter_, PS_ISA)(const Axes& f, const Rays& rays, Rays& local) {
+  for (int i = 0; i < kRays; ++i) {
+    const float x = rays.origin[0][i] - f.origin[0], y = rays.origin[1][i] - f.origin[1],
+                z = rays.origin[2][i] - f.origin[2];
+    const float dx = rays.direction[0][i], dy = rays.direction[1][i], dz = rays.direction[2][i];
+    for (int a = 0; a < 3; ++a) {
+      const float* e = f.axis[a];
+      local.origin[a][i] = (x * e[0] + y * e[1] + z * e[2]) / f.square[a];
+      const float d = (dx * e[0] + dy * e[1] + dz * e[2]) / f.square[a];
+      local.direction[a][i] = d;
+      local.inverse[a][i] = inverse_of(d);
+    }
+    local.reach[i] = rays.reach[i] > 0 ? rays.reach[i] : -1.f;
+    local.u[i] = local.v[i] = 0;
+    local.face[i] = local.part[i] = -1;
+  }
+}
 
 void PS_JOIN(nearest_, PS_ISA)(const TraceNode* nodes, const TraceTriangle* triangles, int part,
                                Rays* rays) {

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "libps/rooms/isa.h"
+
 namespace ps::rooms {
 namespace {
 
@@ -168,75 +170,23 @@ Tree::Tree(const std::vector<std::array<Vec, 2>>& boxes) {
   for (const Item& item : items) triangles.push_back({{}, {}, {}, item.face});
 }
 
-void clear(Rays& rays) {
-  for (int i = 0; i < kRays; ++i) {
-    rays.reach[i] = -1;
-    rays.face[i] = rays.part[i] = -1;
-    rays.u[i] = rays.v[i] = 0;
-    for (int a = 0; a < 3; ++a) {
-      rays.origin[a][i] = 0;
-      rays.direction[a][i] = rays.inverse[a][i] = 1;
-    }
-  }
+void enter(const trace_kernel::Axes& axes, const Rays& rays, Rays& local) {
+  PS_FITTING(trace_kernel::enter)(axes, rays, local);
 }
-
-void set_ray(Rays& rays, int i, Vec origin, Vec direction, float reach) {
-  const float o[3] = {origin.x, origin.y, origin.z};
-  const float d[3] = {direction.x, direction.y, direction.z};
-  for (int a = 0; a < 3; ++a) {
-    rays.origin[a][i] = o[a];
-    rays.direction[a][i] = d[a];
-    rays.inverse[a][i] = 1 / (std::abs(d[a]) > 1e-12f ? d[a] : 1e-12f);
-  }
-  rays.reach[i] = reach;
-  rays.face[i] = rays.part[i] = -1;
-}
-
-namespace {
-
-struct Kernels {
-  trace_kernel::Nearest* nearest;
-  trace_kernel::Blocked* blocked;
-  trace_kernel::Reached* reached;
-};
-
-Kernels choose() {
-#ifdef PS_X86_KERNELS
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512dq")) {
-    return {trace_kernel::nearest_avx512, trace_kernel::blocked_avx512,
-            trace_kernel::reached_avx512};
-  }
-  if (__builtin_cpu_supports("avx2")) {
-    return {trace_kernel::nearest_avx2, trace_kernel::blocked_avx2, trace_kernel::reached_avx2};
-  }
-#endif
-  return {trace_kernel::nearest_baseline, trace_kernel::blocked_baseline,
-          trace_kernel::reached_baseline};
-}
-
-const Kernels& kernels() {
-  static const Kernels chosen = choose();
-  return chosen;
-}
-
-}  // namespace
 
 void nearest(const Tree& tree, int part, Rays& rays) {
-  if (!tree.nodes.empty()) {
-    kernels().nearest(tree.nodes.data(), tree.triangles.data(), part, &rays);
-  }
+  if (tree.nodes.empty()) return;
+  PS_FITTING(trace_kernel::nearest)(tree.nodes.data(), tree.triangles.data(), part, &rays);
 }
 
 void blocked(const Tree& tree, Rays& rays) {
-  if (!tree.nodes.empty()) {
-    kernels().blocked(tree.nodes.data(), tree.triangles.data(), &rays);
-  }
+  if (tree.nodes.empty()) return;
+  PS_FITTING(trace_kernel::blocked)(tree.nodes.data(), tree.triangles.data(), &rays);
 }
 
 int reached(const Tree& tree, const Rays& rays, std::uint32_t* out) {
   if (tree.nodes.empty()) return 0;
-  return kernels().reached(tree.nodes.data(), tree.triangles.data(), &rays, out);
+  return PS_FITTING(trace_kernel::reached)(tree.nodes.data(), tree.triangles.data(), &rays, out);
 }
 
 }  // namespace ps::rooms

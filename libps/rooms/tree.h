@@ -22,10 +22,33 @@ struct Tree {
 };
 
 /// Empties the packet: no rays.
-void clear(Rays& rays);
-/// Sets ray i: origin + t direction for t in (0, reach).
-void set_ray(Rays& rays, int i, Vec origin, Vec direction, float reach);
+inline void clear(Rays& rays) {
+  for (int i = 0; i < kRays; ++i) {
+    rays.reach[i] = -1;
+    rays.face[i] = rays.part[i] = -1;
+    rays.u[i] = rays.v[i] = 0;
+    for (int a = 0; a < 3; ++a) {
+      rays.origin[a][i] = 0;
+      rays.direction[a][i] = rays.inverse[a][i] = 1;
+    }
+  }
+}
 
+/// Sets ray i: origin + t direction for t in (0, reach).
+inline void set_ray(Rays& rays, int i, Vec origin, Vec direction, float reach) {
+  const float o[3] = {origin.x, origin.y, origin.z};
+  const float d[3] = {direction.x, direction.y, direction.z};
+  for (int a = 0; a < 3; ++a) {
+    rays.origin[a][i] = o[a];
+    rays.direction[a][i] = d[a];
+    rays.inverse[a][i] = 1 / (std::abs(d[a]) > 1e-12f ? d[a] : 1e-12f);
+  }
+  rays.reach[i] = reach;
+  rays.face[i] = rays.part[i] = -1;
+}
+
+/// The packet in the frame of a part.
+void enter(const trace_kernel::Axes& axes, const Rays& rays, Rays& local);
 /// See trace_kernel.h; nothing happens for an empty tree.
 void nearest(const Tree& tree, int part, Rays& rays);
 void blocked(const Tree& tree, Rays& rays);
