@@ -3,6 +3,8 @@
 // Loops are left to the compiler to turn into vectors.
 #include "libps/rooms/effects_kernel.h"
 
+#include "libps/rooms/lanes.h"
+
 #define PS_JOIN2(a, b) a##b
 #define PS_JOIN(a, b) PS_JOIN2(a, b)
 
@@ -13,15 +15,14 @@ namespace {
 
 inline float within_one(float x) { return x < 0.f ? 0.f : 1.f < x ? 1.f : x; }
 
-typedef float Eight __attribute__((vector_size(32), aligned(4)));
+typedef float Eight __attribute__((vector_size(32), aligned(4), may_alias));
 
-inline Eight load(const float* p) { return *reinterpret_cast<const Eight*>(p); }
-inline void store(float* p, Eight v) { *reinterpret_cast<Eight*>(p) = v; }
+inline Eight load_eight(const float* p) { return *reinterpret_cast<const Eight*>(p); }
 
 /// Rows, then columns, times a matrix of [from][to].
 inline void transform(const Eight* in, const float* matrix, Eight* out) {
   Eight rows[8], m[8];
-  for (int i = 0; i < 8; ++i) m[i] = load(matrix + 8 * i);
+  for (int i = 0; i < 8; ++i) m[i] = load_eight(matrix + 8 * i);
   for (int r = 0; r < 8; ++r) {
     Eight sum = {};
     for (int i = 0; i < 8; ++i) sum += in[r][i] * m[i];
@@ -53,16 +54,16 @@ void PS_JOIN(tint_, PS_ISA)(float* rgb, const float* light, const float* gains, 
 
 void PS_JOIN(weigh_, PS_ISA)(const float* const* taps, const float* weights, int count, float total,
                              float* out, int floats) {
-  constexpr int kPart = 128;  // stays in the nearest cache
-  for (int first = 0; first < floats; first += kPart) {
-    const int n = floats - first < kPart ? floats - first : kPart;
-    float sum[kPart];
-    for (int i = 0; i < kPart; ++i) sum[i] = 0;
-    for (int t = 0; t < count; ++t) {
-      const float *in = taps[t] + first, w = weights[t];
-      for (int i = 0; i < n; ++i) sum[i] += w * in[i];
-    }
-    for (int i = 0; i < n; ++i) out[first + i] = sum[i] / total;
+  int i = 0;
+  for (; i + kLanes <= floats; i += kLanes) {
+    Lanes sum = {};
+    for (int t = 0; t < count; ++t) sum += load(taps[t] + i) * weights[t];
+    store(out + i, sum / total);
+  }
+  for (; i < floats; ++i) {
+    float sum = 0;
+    for (int t = 0; t < count; ++t) sum += taps[t][i] * weights[t];
+    out[i] = sum / total;
   }
 }
 
@@ -113,15 +114,17 @@ void PS_JOIN(join_, PS_ISA)(const float* luma, const float* blue, const float* r
 void PS_JOIN(quantise_, PS_ISA)(float* block, int stride, const float* basis, const float* inverse,
                                 const float* steps) {
   Eight rows[8], frequencies[8];
-  for (int r = 0; r < 8; ++r) rows[r] = load(block + r * stride);
+  for (int r = 0; r < 8; ++r) rows[r] = load_eight(block + r * stride);
   transform(rows, inverse, frequencies);
   constexpr float kWhole = 12582912;  // floats near it are whole numbers: rounds to the nearest
   for (int k = 0; k < 8; ++k) {
-    const Eight step = load(steps + 8 * k);
+    const Eight step = load_eight(steps + 8 * k);
     frequencies[k] = ((frequencies[k] / step + kWhole) - kWhole) * step;
   }
   transform(frequencies, basis, rows);
-  for (int r = 0; r < 8; ++r) store(block + r * stride, rows[r]);
+  for (int r = 0; r < 8; ++r) {
+    *reinterpret_cast<Eight*>(block + r * stride) = rows[r];
+  }
 }
 
 }  // namespace effects_kernel

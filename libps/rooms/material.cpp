@@ -149,17 +149,6 @@ const std::array<float, 256>& linear_table() {
 
 }  // namespace
 
-float hash(int x, int y, std::uint32_t seed) {
-  std::uint32_t h = static_cast<std::uint32_t>(x) * 0x8da6b343u ^
-                    static_cast<std::uint32_t>(y) * 0xd8163841u ^ seed * 0xcb1ab31fu;
-  h ^= h >> 15;
-  h *= 0x2c1b3c6du;
-  h ^= h >> 12;
-  h *= 0x297a2d39u;
-  h ^= h >> 15;
-  return static_cast<float>(h >> 8) * 0x1p-24f;
-}
-
 float noise(float x, float y, std::uint32_t seed) {
   const int i = floor_of(x), j = floor_of(y);
   float a = x - static_cast<float>(i), b = y - static_cast<float>(j);

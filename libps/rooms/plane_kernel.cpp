@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#include "libps/rooms/lanes.h"
+
 #define PS_JOIN2(a, b) a##b
 #define PS_JOIN(a, b) PS_JOIN2(a, b)
 
@@ -20,8 +22,6 @@ constexpr int kPart = 64;
 inline void put(const float* from, int count, float* to) {
   for (int i = 0; i < count; ++i) to[i] = from[i];
 }
-inline float smaller(float a, float b) { return a < b ? a : b; }
-inline float larger(float a, float b) { return a > b ? a : b; }
 inline float luminance(float r, float g, float b) {
   return 0.2126f * r + 0.7152f * g + 0.0722f * b;
 }
@@ -30,33 +30,23 @@ inline float luminance(float r, float g, float b) {
 
 void PS_JOIN(share_, PS_ISA)(const Stretch* taps, float* const* out, int count) {
   static const float kWeights[5] = {0.5f, 1, 1, 1, 0.5f};
-  const int32_t* own = taps[2].surface;
-  for (int first = 0; first < count; first += kPart) {
-    const int n = count - first < kPart ? count - first : kPart;
-    float red[kPart], green[kPart], blue[kPart], total[kPart];
-    for (int i = 0; i < kPart; ++i) red[i] = green[i] = blue[i] = total[i] = 0;
+  static_assert(kStep % kLanes == 0, "vectors end where steps do");
+  for (int i = 0; i < count; i += kLanes) {
+    const Marks here = load(taps[2].surface + i);
+    Lanes red = {}, green = {}, blue = {}, total = {};
     for (int t = 0; t < 5; ++t) {
-      const float w = kWeights[t];
-      const float *x = taps[t].value[0] + first, *y = taps[t].value[1] + first,
-                  *z = taps[t].value[2] + first;
-      const int32_t *surface = taps[t].surface + first, *here = own + first;
-      for (int i = 0; i < n; ++i) {
-        const float weight = surface[i] == here[i] ? w : 0.f;
-        red[i] += x[i] * weight;
-        green[i] += y[i] * weight;
-        blue[i] += z[i] * weight;
-        total[i] += weight;
-      }
+      const Stretch& tap = taps[t];
+      const Lanes weight =
+          load(tap.surface + i) == here ? all_lanes(kWeights[t]) : all_lanes(0);
+      red += load(tap.value[0] + i) * weight;
+      green += load(tap.value[1] + i) * weight;
+      blue += load(tap.value[2] + i) * weight;
+      total += weight;
     }
-    for (int i = 0; i < n; ++i) {
-      const float inverse = 1 / total[i];
-      red[i] *= inverse;
-      green[i] *= inverse;
-      blue[i] *= inverse;
-    }
-    put(red, n, out[0] + first);
-    put(green, n, out[1] + first);
-    put(blue, n, out[2] + first);
+    const Lanes inverse = 1 / total;
+    store(out[0] + i, red * inverse);
+    store(out[1] + i, green * inverse);
+    store(out[2] + i, blue * inverse);
   }
 }
 
@@ -105,7 +95,8 @@ void PS_JOIN(look_, PS_ISA)(const Curve& curve, const float* in, float* out, int
     const int n = count - first < kPart ? count - first : kPart;
     float at[kPart];
     for (int i = 0; i < n; ++i) {
-      at[i] = smaller(0.9999f, larger(0.f, in[first + i] / most));
+      const float x = in[first + i] / most, above = x > 0.f ? x : 0.f;
+      at[i] = above < 0.9999f ? above : 0.9999f;
     }
     if (curve.root) {
       for (int i = 0; i < n; ++i) at[i] = sqrtf(at[i]);

@@ -9,13 +9,16 @@ namespace ps {
 namespace rooms {
 namespace plane_kernel {
 
+constexpr int kStep = 16;
+
 /// A stretch of a row: three planes of floats, and the number of the surface each pixel is of.
 struct Stretch {
   const float* value[3];
   const int32_t* surface;
 };
 
-/// Means of pixels of one surface, `count` pixels on.
+/// Means of pixels of one surface, `count` pixels on; up to a multiple of kStep pixels are read and
+/// written.
 /// @param taps  five stretches, the middle one that of the pixels themselves: weights are
 /// 1/2, 1, 1, 1, 1/2
 typedef void Share(const Stretch* taps, float* const* out, int count);

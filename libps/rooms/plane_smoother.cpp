@@ -9,12 +9,13 @@ using plane_kernel::Stretch;
 
 PlaneSmoother::PlaneSmoother(const PicturePlane& plane, const std::vector<Vec>& image)
     : width_(plane.width), height_(plane.height), stride_(plane.width + 2 * kMargin) {
-  const std::size_t size = static_cast<std::size_t>(stride_) * height_;
+  // Past its last pixel a row is read and written up to a step on.
+  const std::size_t size = static_cast<std::size_t>(stride_) * height_ + plane_kernel::kStep;
   for (auto& p : from_) p.resize(size);
   for (auto& p : to_) p.resize(size);
   along_rows_.resize(size, -1);
   along_columns_.resize(size, -1);
-  nowhere_.resize(stride_, -1);
+  nowhere_.resize(stride_ + plane_kernel::kStep, -1);
   for (int y = 0; y < height_; ++y) {
     const std::size_t i = plane.index(0, y), j = index(0, y);
     for (int x = 0; x < width_; ++x) {

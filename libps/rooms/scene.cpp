@@ -172,14 +172,14 @@ Vec Probes::irradiance(Vec p, Vec n) const {
               c = axis(p.z, low.z, step.z, nz, k);
   const float nn[3] = {n.x * n.x, n.y * n.y, n.z * n.z};
   const int face[3] = {n.x > 0 ? 0 : 1, n.y > 0 ? 2 : 3, n.z > 0 ? 4 : 5};
-  Vec sum;
+  Four sum = four(0);
   for (int corner = 0; corner < 8; ++corner) {
     const int di = corner & 1, dj = corner >> 1 & 1, dk = corner >> 2;
     const float w = (di ? a : 1 - a) * (dj ? b : 1 - b) * (dk ? c : 1 - c);
     const auto& cube = cubes[(static_cast<std::size_t>(k + dk) * ny + j + dj) * nx + i + di];
     sum += (cube[face[0]] * nn[0] + cube[face[1]] * nn[1] + cube[face[2]] * nn[2]) * w;
   }
-  return sum;
+  return vec(sum);
 }
 
 }  // namespace ps::rooms

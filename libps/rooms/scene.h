@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "libps/rooms/four.h"
 #include "libps/rooms/furniture_store.h"
 #include "libps/rooms/light_kernel.h"
 #include "libps/rooms/mesh.h"
@@ -62,7 +63,7 @@ struct Sky {
 struct Probes {
   Vec low, step;
   int nx = 0, ny = 0, nz = 0;
-  std::vector<std::array<Vec, 6>> cubes;
+  std::vector<std::array<Four, 6>> cubes;
 
   Vec irradiance(Vec position, Vec normal) const;
 };

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "libps/rooms/four.h"
 #include "libps/rooms/isa.h"
 
 namespace ps::rooms {
@@ -15,9 +16,9 @@ constexpr int kLargestLeaf = 4;  ///< triangles
 constexpr int kDeepest = 56;     ///< the kernel's stack holds 64
 
 struct Box {
-  Vec low = {1e30f, 1e30f, 1e30f}, high = {-1e30f, -1e30f, -1e30f};
+  Four low = four(1e30f), high = four(-1e30f);
 
-  void add(Vec p) {
+  void add(Four p) {
     low = min(low, p);
     high = max(high, p);
   }
@@ -26,16 +27,14 @@ struct Box {
     high = max(high, b.high);
   }
   float half_area() const {
-    const Vec d = high - low;
-    return d.x < 0 ? 0 : d.x * d.y + d.y * d.z + d.z * d.x;
+    const Four d = high - low;
+    return d[0] < 0 ? 0 : d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
   }
 };
 
-float along(Vec v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
-
 struct Item {
   Box box;
-  Vec center;
+  Four center;
   std::uint32_t face;
 };
 
@@ -44,21 +43,35 @@ struct Split {
   float place = 0;
 };
 
+/// Items by where their centres lie between `low` and `low + extent`, along each axis.
+struct Bins {
+  Box boxes[3][kBins];
+  int counts[3][kBins] = {};
+
+  Bins(const Item* items, int count, Four low, Four extent) {
+    const Four safe = extent > 1e-6f ? extent : four(1);
+    for (int i = 0; i < count; ++i) {
+      const Four place = (items[i].center - low) / safe * static_cast<float>(kBins);
+      for (int axis = 0; axis < 3; ++axis) {
+        const int bin = std::min(kBins - 1, static_cast<int>(place[axis]));
+        boxes[axis][bin].add(items[i].box);
+        ++counts[axis][bin];
+      }
+    }
+  }
+};
+
 /// The cheapest of the planes between bins, over the three axes.
 Split best_split(const Item* items, int count, const Box& centers) {
+  const Four extents = centers.high - centers.low;
+  const Bins bins(items, count, centers.low, extents);
   Split best;
   float best_cost = std::numeric_limits<float>::max();
   for (int axis = 0; axis < 3; ++axis) {
-    const float low = along(centers.low, axis), extent = along(centers.high, axis) - low;
+    const float low = centers.low[axis], extent = extents[axis];
     if (!(extent > 1e-6f)) continue;
-    Box boxes[kBins];
-    int counts[kBins] = {};
-    for (int i = 0; i < count; ++i) {
-      const int bin = std::min(
-          kBins - 1, static_cast<int>((along(items[i].center, axis) - low) / extent * kBins));
-      boxes[bin].add(items[i].box);
-      ++counts[bin];
-    }
+    const Box* boxes = bins.boxes[axis];
+    const int* counts = bins.counts[axis];
     float right_cost[kBins];
     Box right;
     int right_count = 0;
@@ -94,8 +107,8 @@ class Builder {
       box.add(items_[i].box);
       centers.add(items_[i].center);
     }
-    TraceNode n{{box.low.x, box.low.y, box.low.z},
-                {box.high.x, box.high.y, box.high.z},
+    TraceNode n{{box.low[0], box.low[1], box.low[2]},
+                {box.high[0], box.high[1], box.high[2]},
                 static_cast<std::uint32_t>(begin),
                 static_cast<std::uint16_t>(end - begin),
                 0};
@@ -121,7 +134,7 @@ class Builder {
     axis = static_cast<std::uint16_t>(best.axis);
     const auto middle = std::partition(
         items_.begin() + begin, items_.begin() + end,
-        [&](const Item& item) { return along(item.center, best.axis) < best.place; });
+        [&](const Item& item) { return item.center[best.axis] < best.place; });
     const int found = static_cast<int>(middle - items_.begin());
     return found == end ? begin : found;
   }
@@ -138,11 +151,11 @@ Tree::Tree(const Mesh& mesh) {
   items.reserve(mesh.faces.size());
   for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
     Item item;
-    for (const std::uint32_t c : mesh.faces[f].corners) item.box.add(mesh.corners[c].position);
+    for (const std::uint32_t c : mesh.faces[f].corners) item.box.add(four(mesh.corners[c].position));
     item.center = (item.box.low + item.box.high) * 0.5f;
     // Boxes of flat things must not be lost to rounding.
-    item.box.low = item.box.low - Vec{1e-5f, 1e-5f, 1e-5f};
-    item.box.high = item.box.high + Vec{1e-5f, 1e-5f, 1e-5f};
+    item.box.low -= 1e-5f;
+    item.box.high += 1e-5f;
     item.face = f;
     items.push_back(item);
   }
@@ -162,7 +175,8 @@ Tree::Tree(const Mesh& mesh) {
 Tree::Tree(const std::vector<std::array<Vec, 2>>& boxes) {
   std::vector<Item> items;
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
-    items.push_back({{boxes[i][0], boxes[i][1]}, (boxes[i][0] + boxes[i][1]) * 0.5f, i});
+    const Four low = four(boxes[i][0]), high = four(boxes[i][1]);
+    items.push_back({{low, high}, (low + high) * 0.5f, i});
   }
   if (items.empty()) return;
   nodes.resize(1);
