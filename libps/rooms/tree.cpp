@@ -98,8 +98,16 @@ Split best_split(const Item* items, int count, const Box& centers) {
 
 class Builder {
  public:
-  Builder(std::vector<Item>& items, std::vector<TraceNode>& nodes, int leaf)
-      : items_(items), nodes_(nodes), leaf_(leaf) {}
+  Builder(std::vector<Item>& items, std::vector<Tree::Pair>& pairs, int leaf)
+      : items_(items), pairs_(pairs), leaf_(leaf) {}
+
+  void build() {
+    pairs_.resize(1);
+    build(0, 0, static_cast<int>(items_.size()), 0);
+  }
+
+ private:
+  TraceNode& at(std::uint32_t node) { return pairs_[node / 2].nodes[node % 2]; }
 
   void build(std::uint32_t node, int begin, int end, int depth) {
     Box box, centers;
@@ -116,17 +124,16 @@ class Builder {
     if (end - begin > leaf_ && depth < kDeepest) middle = split(begin, end, centers, n.axis);
     if (middle == begin && end - begin > 0xffff) middle = (begin + end) / 2;
     if (middle > begin) {
-      n.first = static_cast<std::uint32_t>(nodes_.size());
+      n.first = static_cast<std::uint32_t>(2 * pairs_.size());
       n.count = 0;
     }
-    nodes_[node] = n;
+    at(node) = n;
     if (middle == begin) return;
-    nodes_.resize(nodes_.size() + 2);
+    pairs_.emplace_back();
     build(n.first, begin, middle, depth + 1);
     build(n.first + 1, middle, end, depth + 1);
   }
 
- private:
   /// @return where the second half begins; `begin` if all are in one place
   int split(int begin, int end, const Box& centers, std::uint16_t& axis) {
     const Split best = best_split(&items_[begin], end - begin, centers);
@@ -140,7 +147,7 @@ class Builder {
   }
 
   std::vector<Item>& items_;
-  std::vector<TraceNode>& nodes_;
+  std::vector<Tree::Pair>& pairs_;
   int leaf_;
 };
 
@@ -160,9 +167,8 @@ Tree::Tree(const Mesh& mesh) {
     items.push_back(item);
   }
   if (items.empty()) return;
-  nodes.reserve(items.size());
-  nodes.resize(1);
-  Builder(items, nodes, kLargestLeaf).build(0, 0, static_cast<int>(items.size()), 0);
+  pairs.reserve(items.size() / 2 + 1);
+  Builder(items, pairs, kLargestLeaf).build();
   triangles.reserve(items.size());
   for (const Item& item : items) {
     const auto& c = mesh.faces[item.face].corners;
@@ -179,8 +185,7 @@ Tree::Tree(const std::vector<std::array<Vec, 2>>& boxes) {
     items.push_back({{low, high}, (low + high) * 0.5f, i});
   }
   if (items.empty()) return;
-  nodes.resize(1);
-  Builder(items, nodes, 1).build(0, 0, static_cast<int>(items.size()), 0);
+  Builder(items, pairs, 1).build();
   for (const Item& item : items) triangles.push_back({{}, {}, {}, item.face});
 }
 
@@ -189,18 +194,18 @@ void enter(const trace_kernel::Axes& axes, const Rays& rays, Rays& local) {
 }
 
 void nearest(const Tree& tree, int part, Rays& rays) {
-  if (tree.nodes.empty()) return;
-  PS_FITTING(trace_kernel::nearest)(tree.nodes.data(), tree.triangles.data(), part, &rays);
+  if (tree.empty()) return;
+  PS_FITTING(trace_kernel::nearest)(tree.root(), tree.triangles.data(), part, &rays);
 }
 
 void blocked(const Tree& tree, Rays& rays) {
-  if (tree.nodes.empty()) return;
-  PS_FITTING(trace_kernel::blocked)(tree.nodes.data(), tree.triangles.data(), &rays);
+  if (tree.empty()) return;
+  PS_FITTING(trace_kernel::blocked)(tree.root(), tree.triangles.data(), &rays);
 }
 
 int reached(const Tree& tree, const Rays& rays, std::uint32_t* out) {
-  if (tree.nodes.empty()) return 0;
-  return PS_FITTING(trace_kernel::reached)(tree.nodes.data(), tree.triangles.data(), &rays, out);
+  if (tree.empty()) return 0;
+  return PS_FITTING(trace_kernel::reached)(tree.root(), tree.triangles.data(), &rays, out);
 }
 
 }  // namespace ps::rooms

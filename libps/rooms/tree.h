@@ -12,13 +12,21 @@ namespace ps::rooms {
 /// The triangles of a mesh, sorted for rays: a binary tree of boxes by the surface area heuristic
 /// (Wald, "On fast Construction of SAH-based Bounding Volume Hierarchies", 2007).
 struct Tree {
-  std::vector<TraceNode> nodes;  ///< none for an empty mesh
+  /// Two that are looked at together, in one line of the cache.
+  struct alignas(64) Pair {
+    TraceNode nodes[2];
+  };
+  std::vector<Pair> pairs;  ///< the root, alone, then children; none for an empty mesh
   std::vector<TraceTriangle> triangles;
 
   Tree() = default;
   explicit Tree(const Mesh& mesh);
   /// A tree of boxes (low, high), for reached().
   explicit Tree(const std::vector<std::array<Vec, 2>>& boxes);
+
+  bool empty() const { return pairs.empty(); }
+  /// @return as kernels take nodes: child 2 i + k is node k of pair i
+  const TraceNode* root() const { return pairs.data()->nodes; }
 };
 
 /// Empties the packet: no rays.
