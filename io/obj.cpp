@@ -32,9 +32,9 @@ struct Reader {
   std::vector<std::array<float, 3>> vertices;
   std::vector<std::array<float, 2>> uvs;
   static constexpr std::uint32_t kNone = 0xffffffff;
-  std::vector<std::uint32_t> position_at;  ///< of each vertex, the position it last gave
+  std::vector<std::uint32_t> position_at;   ///< of each vertex, the position it last gave
   std::vector<std::uint32_t> other, uv_of;  ///< of each position: the vertex's one before, its uv
-  std::vector<std::uint32_t> face;  ///< of the line that is read: positions
+  std::vector<std::uint32_t> face;          ///< of the line that is read: positions
   std::vector<std::array<float, 3>> polygon;
   std::vector<std::array<std::size_t, 3>> triangles;
   std::vector<std::string> libraries;

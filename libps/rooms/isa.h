@@ -27,7 +27,7 @@ inline Isa isa() {
 
 /// The build of kernel `name` that suits this machine.
 #ifdef PS_X86_KERNELS
-#define PS_FITTING(name)                                          \
+#define PS_FITTING(name)                                      \
   (ps::rooms::isa() == ps::rooms::Isa::avx512 ? name##_avx512 \
    : ps::rooms::isa() == ps::rooms::Isa::avx2 ? name##_avx2   \
                                               : name##_baseline)

@@ -33,8 +33,8 @@ inline Lanes larger(Lanes a, Lanes b) { return a > b ? a : b; }
 /// @return whether any a is at most its b
 inline bool any_at_most(Lanes a, Lanes b) {
 #if defined(__AVX512F__)
-  return _mm512_cmp_ps_mask(reinterpret_cast<__m512>(a), reinterpret_cast<__m512>(b),
-                            _CMP_LE_OQ) != 0;
+  return _mm512_cmp_ps_mask(reinterpret_cast<__m512>(a), reinterpret_cast<__m512>(b), _CMP_LE_OQ) !=
+         0;
 #elif defined(__AVX2__)
   return _mm256_movemask_ps(reinterpret_cast<__m256>(a <= b)) != 0;
 #elif defined(__SSE2__)

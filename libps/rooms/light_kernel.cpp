@@ -27,8 +27,7 @@ void PS_JOIN(weigh_, PS_ISA)(const Lamp* lamps, int count, const Places& p, floa
       const float s = p.nx[i] * x + p.ny[i] * y + p.nz[i] * z + over;
       const float flat = -(lamp.normal[0] * x + lamp.normal[1] * y + lamp.normal[2] * z);
       const float l = round * sqrtf(d2) + (1 - round) * flat;
-      const float rate =
-          lamp.area * (s > 0 ? s : 0.f) * (l > 0 ? l : 0.f) / (d2 * (d2 + size));
+      const float rate = lamp.area * (s > 0 ? s : 0.f) * (l > 0 ? l : 0.f) / (d2 * (d2 + size));
       out[i] = rate;
       sum[i] += rate;
       light[i] += rate * bright;

@@ -36,8 +36,7 @@ void PS_JOIN(share_, PS_ISA)(const Stretch* taps, float* const* out, int count) 
     Lanes red = {}, green = {}, blue = {}, total = {};
     for (int t = 0; t < 5; ++t) {
       const Stretch& tap = taps[t];
-      const Lanes weight =
-          load(tap.surface + i) == here ? all_lanes(kWeights[t]) : all_lanes(0);
+      const Lanes weight = load(tap.surface + i) == here ? all_lanes(kWeights[t]) : all_lanes(0);
       red += load(tap.value[0] + i) * weight;
       green += load(tap.value[1] + i) * weight;
       blue += load(tap.value[2] + i) * weight;

@@ -35,10 +35,10 @@ class PlaneSmoother {
   template <typename Kernel>
   void pass(Kernel kernel, int taps, int apart);
 
-  int width_, height_, stride_;                      ///< rows have margins
-  std::array<std::vector<float>, 3> from_, to_;      ///< planes of red, green, blue
+  int width_, height_, stride_;                           ///< rows have margins
+  std::array<std::vector<float>, 3> from_, to_;           ///< planes of red, green, blue
   std::vector<std::int32_t> along_rows_, along_columns_;  ///< surfaces; -1 in margins
-  std::vector<std::int32_t> nowhere_;                ///< a row of -1
+  std::vector<std::int32_t> nowhere_;                     ///< a row of -1
 };
 
 }  // namespace ps::rooms

@@ -139,9 +139,9 @@ class Builder {
     const Split best = best_split(&items_[begin], end - begin, centers);
     if (best.axis < 0) return begin;
     axis = static_cast<std::uint16_t>(best.axis);
-    const auto middle = std::partition(
-        items_.begin() + begin, items_.begin() + end,
-        [&](const Item& item) { return item.center[best.axis] < best.place; });
+    const auto middle =
+        std::partition(items_.begin() + begin, items_.begin() + end,
+                       [&](const Item& item) { return item.center[best.axis] < best.place; });
     const int found = static_cast<int>(middle - items_.begin());
     return found == end ? begin : found;
   }
@@ -158,7 +158,8 @@ Tree::Tree(const Mesh& mesh) {
   items.reserve(mesh.faces.size());
   for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
     Item item;
-    for (const std::uint32_t c : mesh.faces[f].corners) item.box.add(four(mesh.corners[c].position));
+    for (const std::uint32_t c : mesh.faces[f].corners)
+      item.box.add(four(mesh.corners[c].position));
     item.center = (item.box.low + item.box.high) * 0.5f;
     // Boxes of flat things must not be lost to rounding.
     item.box.low -= 1e-5f;

@@ -336,8 +336,7 @@ TEST(Kernels, that_enter_a_frame_give_rays_that_meet_the_same_points) {
   Rays rays;
   clear(rays);
   for (int i = 0; i < kRays; i += 2) {
-    set_ray(rays, i, {d.range(-1, 1), d.range(-1, 1), d.range(-1, 1)}, {d.unit(), -d.unit(), 0},
-            5);
+    set_ray(rays, i, {d.range(-1, 1), d.range(-1, 1), d.range(-1, 1)}, {d.unit(), -d.unit(), 0}, 5);
   }
   const Frame f = turned(0.7f, {1, 2, 3});
   const trace_kernel::Axes axes = {
