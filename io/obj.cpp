@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <unordered_map>
 #include <vector>
 
 #include "io/bytes.h"
@@ -32,7 +31,12 @@ struct Reader {
   Model model;
   std::vector<std::array<float, 3>> vertices;
   std::vector<std::array<float, 2>> uvs;
-  std::unordered_map<std::uint64_t, std::uint32_t> corners;  ///< vertex and uv -> position
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  std::vector<std::uint32_t> position_at;   ///< of each vertex, the position it last gave
+  std::vector<std::uint32_t> other, uv_of;  ///< of each position: the vertex's one before, its uv
+  std::vector<std::uint32_t> face;          ///< of the line that is read: positions
+  std::vector<std::array<float, 3>> polygon;
+  std::vector<std::array<std::size_t, 3>> triangles;
   std::vector<std::string> libraries;
   std::map<std::string, std::uint32_t> materials;  ///< of the model, by name
   std::uint32_t material = 0;
@@ -76,13 +80,16 @@ std::uint32_t Reader::read_corner(std::string_view token) {
   token.remove_prefix(std::min(slash + 1, token.size()));
   const std::string_view uv_token = token.substr(0, token.find('/'));
   const std::size_t uv = uv_token.empty() ? 0 : index(uv_token, uvs.size()) + 1;
-  const auto [found, fresh] = corners.emplace(static_cast<std::uint64_t>(uv) << 32 | vertex,
-                                              static_cast<std::uint32_t>(model.positions.size()));
-  if (fresh) {
-    model.positions.push_back(vertices[vertex]);
-    model.uvs.push_back(uv == 0 ? std::array<float, 2>{} : uvs[uv - 1]);
+  for (std::uint32_t p = position_at[vertex]; p != kNone; p = other[p]) {
+    if (uv_of[p] == uv) return p;
   }
-  return found->second;
+  const auto fresh = static_cast<std::uint32_t>(model.positions.size());
+  other.push_back(position_at[vertex]);
+  uv_of.push_back(static_cast<std::uint32_t>(uv));
+  position_at[vertex] = fresh;
+  model.positions.push_back(vertices[vertex]);
+  model.uvs.push_back(uv == 0 ? std::array<float, 2>{} : uvs[uv - 1]);
+  return fresh;
 }
 
 void Reader::read_face(std::string_view line) {
@@ -93,13 +100,15 @@ void Reader::read_face(std::string_view line) {
                 "a simpler model");
   }
   if (materials.empty()) use("");
-  std::vector<std::uint32_t> face;
-  std::vector<std::array<float, 3>> polygon;
+  face.clear();
+  polygon.clear();
+  position_at.resize(vertices.size(), kNone);
   for (std::size_t i = 0; i < count; ++i) {
     face.push_back(read_corner(next_token(line)));
     polygon.push_back(model.positions[face.back()]);
   }
-  for (const auto& [a, b, c] : triangulate(polygon)) {
+  triangulate(polygon, triangles);
+  for (const auto& [a, b, c] : triangles) {
     model.triangles.push_back({{face[a], face[b], face[c]}, material});
   }
 }

@@ -12,8 +12,8 @@ using Point = std::array<double, 2>;
 
 constexpr std::size_t kMostEars = 256;
 
-/// @return the corners in their plane's two widest axes, turning to the left
-std::vector<Point> flattened(const std::vector<std::array<float, 3>>& corners) {
+/// The corners in their plane's two widest axes, turning to the left.
+void flatten(const std::vector<std::array<float, 3>>& corners, std::vector<Point>& flat) {
   std::array<double, 3> normal{};  // Newell's: the polygon's area seen along each axis
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const auto &a = corners[i], &b = corners[(i + 1) % corners.size()];
@@ -26,12 +26,10 @@ std::vector<Point> flattened(const std::vector<std::array<float, 3>>& corners) {
   const auto widest = std::max_element(normal.begin(), normal.end(), larger);
   const auto axis = static_cast<std::size_t>(widest - normal.begin());
   const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
-  std::vector<Point> flat;
-  flat.reserve(corners.size());
+  flat.clear();
   for (const auto& corner : corners) {
     flat.push_back(*widest < 0 ? Point{corner[v], corner[u]} : Point{corner[u], corner[v]});
   }
-  return flat;
 }
 
 /// Twice the area of a, b, c; positive when they turn to the left.
@@ -46,13 +44,15 @@ bool inside(const Point& p, const Point& a, const Point& b, const Point& c) {
 
 }  // namespace
 
-std::vector<std::array<std::size_t, 3>> triangulate(
-    const std::vector<std::array<float, 3>>& corners) {
-  std::vector<std::size_t> left(corners.size());
+void triangulate(const std::vector<std::array<float, 3>>& corners,
+                 std::vector<std::array<std::size_t, 3>>& triangles) {
+  thread_local std::vector<std::size_t> left;  // models have very many small polygons
+  thread_local std::vector<Point> flat;
+  left.resize(corners.size());
   std::iota(left.begin(), left.end(), std::size_t{0});
-  std::vector<std::array<std::size_t, 3>> triangles;
+  triangles.clear();
   const bool simple = left.size() > 3 && left.size() <= kMostEars;
-  const std::vector<Point> flat = simple ? flattened(corners) : std::vector<Point>();
+  if (simple) flatten(corners, flat);
   const auto is_ear = [&](std::size_t i) {
     const std::size_t n = left.size();
     const Point &a = flat[left[(i + n - 1) % n]], &b = flat[left[i]], &c = flat[left[(i + 1) % n]];
@@ -71,7 +71,6 @@ std::vector<std::array<std::size_t, 3>> triangulate(
   for (std::size_t i = 2; i < left.size(); ++i) {
     triangles.push_back({left[0], left[i - 1], left[i]});
   }
-  return triangles;
 }
 
 }  // namespace ps

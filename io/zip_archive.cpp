@@ -13,7 +13,8 @@
 namespace ps {
 namespace {
 
-constexpr std::size_t kAtOnce = std::size_t{1} << 20;
+constexpr std::size_t kAtOnce = std::size_t{1} << 20, kGlance = 4096;
+constexpr std::size_t kMostAhead = std::size_t{8} << 20;  // room made for what is promised alone
 
 /// @return libzip's words for a failure
 std::string reason(zip_error_t* error) {
@@ -69,10 +70,12 @@ std::string ZipArchive::read(const std::string& entry, std::size_t most) const {
   const EntryFile file(zip_fopen_index(archive_.get(), found->second, 0));
   if (!file) throw Error(where, std::string("cannot be read: ") + zip_strerror(archive_.get()));
   std::string content;
-  content.reserve(std::min<std::size_t>(status.size, bytes_.size()));
+  content.reserve(std::min<std::size_t>(status.size, kMostAhead) + kGlance);
   for (;;) {
     const std::size_t before = content.size();
-    content.resize(before + std::min(kAtOnce, most - before + 1));
+    // As much as the archive promises, then a look at whether there is more.
+    const std::size_t left = before < status.size ? status.size - before : kGlance;
+    content.resize(before + std::min({kAtOnce, left, most - before + 1}));
     const zip_int64_t got = zip_fread(file.get(), &content[before], content.size() - before);
     if (got < 0) throw Error(where, "is damaged: " + std::string(zip_file_strerror(file.get())));
     content.resize(before + static_cast<std::size_t>(got));

@@ -7,13 +7,14 @@
 
 #include "libps/core/error.h"
 #include "libps/rooms/dice.h"
+#include "libps/rooms/effects_kernel.h"
+#include "libps/rooms/isa.h"
+#include "libps/rooms/plane_kernel.h"
 
 namespace ps::rooms {
 namespace {
 
-float& channel(Shot& s, int x, int y, int c) {
-  return s.color[(static_cast<std::size_t>(y) * s.width + x) * 3 + c];
-}
+float* row_of(Shot& s, int y) { return &s.color[static_cast<std::size_t>(y) * s.width * 3]; }
 
 /// A function of [0, 1.5) by table.
 class Table {
@@ -22,10 +23,9 @@ class Table {
   explicit Table(F f) {
     for (int i = 0; i <= kSteps; ++i) values_[i] = f(kMost * static_cast<float>(i) / kSteps);
   }
-  float operator()(float x) const {
-    const float at = std::clamp(x / kMost, 0.f, 0.9999f) * kSteps;
-    const int i = static_cast<int>(at);
-    return mix(values_[i], values_[i + 1], at - static_cast<float>(i));
+  /// Puts the function in the place of each x.
+  void apply(float* x, int count) const {
+    PS_FITTING(plane_kernel::look)({values_.data(), kSteps, kMost, false}, x, x, count);
   }
 
  private:
@@ -53,22 +53,30 @@ void tone(Shot& s, Dice& d, const EffectOptions& o) {
   });
   const float mx = 0.5f * static_cast<float>(s.width - 1);
   const float my = 0.5f * static_cast<float>(s.height - 1);
+  std::vector<float> light(s.width);
   for (int y = 0; y < s.height; ++y) {
+    const float b = (static_cast<float>(y) - my) / (my + 1);
     for (int x = 0; x < s.width; ++x) {
       const float a = (static_cast<float>(x) - mx) / (mx + 1);
-      const float b = (static_cast<float>(y) - my) / (my + 1);
-      const float light = light_left((a * a + b * b) * 0.7f);
-      float* p = &channel(s, x, y, 0);
-      float v[3];
-      for (int c = 0; c < 3; ++c) v[c] = std::min(1.f, p[c] * gains[c] * light);
-      const float grey = 0.3f * v[0] + 0.59f * v[1] + 0.11f * v[2];
-      for (int c = 0; c < 3; ++c) p[c] = contrast(clamp01(grey + (v[c] - grey) * saturation));
+      light[x] = (a * a + b * b) * 0.7f;
     }
+    light_left.apply(light.data(), s.width);
+    PS_FITTING(effects_kernel::tint)(row_of(s, y), light.data(), gains, saturation, s.width);
+    contrast.apply(row_of(s, y), 3 * s.width);
+  }
+}
+
+constexpr int kMostReach = 8;
+
+/// A row of pixels with its first and last repeated kMostReach times.
+void widen(const float* row, int width, float* wide) {
+  for (int x = -kMostReach; x < width + kMostReach; ++x) {
+    const float* p = row + 3 * std::clamp(x, 0, width - 1);
+    std::copy(p, p + 3, wide + 3 * (x + kMostReach));
   }
 }
 
 /// A small kernel along each axis: sigma pixels, in x and in y.
-constexpr int kMostReach = 8;
 std::vector<float> blurred(const Shot& s, float sigma_x, float sigma_y) {
   std::vector<float> image = s.color, out = image;
   for (const bool along_x : {true, false}) {
@@ -80,20 +88,20 @@ std::vector<float> blurred(const Shot& s, float sigma_x, float sigma_y) {
       const float q = static_cast<float>(k) / sigma;
       total += weight[k + kMostReach] = std::exp(-0.5f * q * q);
     }
+    const std::size_t row = static_cast<std::size_t>(s.width) * 3;
+    std::vector<float> wide(row + 6 * kMostReach);  // a row whose ends go on
+    const float* taps[2 * kMostReach + 1];
     for (int y = 0; y < s.height; ++y) {
-      for (int x = 0; x < s.width; ++x) {
-        float sum[3] = {0, 0, 0};
-        for (int k = -reach; k <= reach; ++k) {
-          const int i = along_x ? std::clamp(x + k, 0, s.width - 1) : x;
-          const int j = along_x ? y : std::clamp(y + k, 0, s.height - 1);
-          const float* p = &image[(static_cast<std::size_t>(j) * s.width + i) * 3];
-          for (int c = 0; c < 3; ++c) sum[c] += weight[k + kMostReach] * p[c];
-        }
-        for (int c = 0; c < 3; ++c)
-          out[(static_cast<std::size_t>(y) * s.width + x) * 3 + c] = sum[c] / total;
+      if (along_x) widen(&image[y * row], s.width, wide.data());
+      for (int k = -reach; k <= reach; ++k) {
+        taps[k + reach] = along_x ? &wide[3 * (kMostReach + k)]
+                                  : &image[std::clamp(y + k, 0, s.height - 1) * row];
       }
+      PS_FITTING(effects_kernel::weigh)
+      (taps, weight + kMostReach - reach, 2 * reach + 1, total, &out[y * row],
+       static_cast<int>(row));
     }
-    image = out;
+    std::swap(image, out);
   }
   return image;
 }
@@ -114,98 +122,80 @@ void focus(Shot& s, Dice& d, const EffectOptions& o) {
 }
 
 /// Many cheap numbers: a congruential generator, its upper half (O'Neill, "PCG", 2014, after the
-/// same thought).
-class Grain {
- public:
-  explicit Grain(Dice& d) : state_(static_cast<std::uint64_t>(d.bits()) << 32 | d.bits()) {}
-  /// About N(0, 1): a sum of four.
-  float normal() {
-    state_ = state_ * 6364136223846793005u + 1442695040888963407u;
-    const std::uint64_t x = state_ ^ state_ >> 29;
-    float sum = 0;
-    for (const int shift : {0, 16, 32, 48}) sum += static_cast<float>(x >> shift & 0xffff);
-    return (sum * 0x1p-16f - 2) * 1.7320508f;
+/// same thought), several at a time.
+effects_kernel::Streams streams_from(std::uint64_t state) {
+  constexpr std::uint64_t kTimes = 6364136223846793005u, kPlus = 1442695040888963407u;
+  effects_kernel::Streams streams{{}, 1, 0};
+  for (std::uint64_t& s : streams.state) {
+    s = state = state * kTimes + kPlus;
+    streams.leap *= kTimes;
+    streams.add = streams.add * kTimes + kPlus;
   }
-
- private:
-  std::uint64_t state_;
-};
+  return streams;
+}
 
 void grain(Shot& s, Dice& d, const EffectOptions& o) {
   if (o.noise <= 0 || d.chance(0.2f)) return;
   const float sigma = o.noise * d.unit() * d.unit(), colored = d.unit();
-  Grain random(d);
-  for (std::size_t i = 0; i < s.color.size(); i += 3) {
-    const float shared = random.normal();
-    for (int c = 0; c < 3; ++c) {
-      const float light = s.color[i + c];
-      const float n = mix(shared, random.normal(), colored);
-      s.color[i + c] = clamp01(light + sigma * n * (1.2f - 0.8f * light));
-    }
-  }
+  const std::uint64_t high = d.bits(), low = d.bits();
+  effects_kernel::Streams streams = streams_from(high << 32 | low);
+  PS_FITTING(effects_kernel::grain)
+  (&streams, s.color.data(), sigma, colored, static_cast<int>(s.color.size() / 3));
 }
 
 using Block = std::array<float, 64>;
 
-/// The 8x8 cosine transform, rows then columns; `back` undoes it.
-void transform(Block& block, bool back) {
-  static const Block basis = [] {
-    Block b;
-    for (int k = 0; k < 8; ++k) {
-      for (int i = 0; i < 8; ++i) {
-        b[k * 8 + i] = (k == 0 ? std::sqrt(0.125f) : 0.5f) *
-                       static_cast<float>(std::cos((2 * i + 1) * k * 3.14159265358979 / 16));
-      }
+/// Of the 8x8 cosine transform, by frequency, then place.
+Block cosines() {
+  Block b;
+  for (int k = 0; k < 8; ++k) {
+    for (int i = 0; i < 8; ++i) {
+      b[k * 8 + i] = (k == 0 ? std::sqrt(0.125f) : 0.5f) *
+                     static_cast<float>(std::cos((2 * i + 1) * k * 3.14159265358979 / 16));
     }
-    return b;
-  }();
-  for (int pass = 0; pass < 2; ++pass) {
-    Block out;
-    for (int r = 0; r < 8; ++r) {
-      for (int k = 0; k < 8; ++k) {
-        float sum = 0;
-        for (int i = 0; i < 8; ++i)
-          sum += block[r * 8 + i] * (back ? basis[i * 8 + k] : basis[k * 8 + i]);
-        out[k * 8 + r] = sum;  // transposed: the second pass does the columns
-      }
-    }
-    block = out;
   }
+  return b;
+}
+
+Block transposed(const Block& block) {
+  Block b;
+  for (int i = 0; i < 64; ++i) b[i] = block[i % 8 * 8 + i / 8];
+  return b;
 }
 
 /// Quantises 8x8 blocks of luma and colour as JPEG does, finer frequencies coarser.
 void quantise(Shot& s, Dice& d, const EffectOptions& o) {
+  static const Block basis = cosines(), inverse = transposed(basis);
   if (o.jpeg <= 0 || d.chance(0.3f)) return;
   const float coarse = o.jpeg * d.unit() * 0.02f;
+  Block steps[2];  // of luma, of colour
+  for (int c = 0; c < 2; ++c) {
+    for (int i = 0; i < 64; ++i) {
+      steps[c][i] =
+          coarse * static_cast<float>(c + 1) * (1 + 0.6f * static_cast<float>(i % 8 + i / 8)) +
+          1e-5f;
+    }
+  }
+  const int stride = (s.width + 7) / 8 * 8;  // blocks at the edges repeat the last pixels
+  std::vector<float> planes[3];
+  for (auto& p : planes) p.resize(8 * static_cast<std::size_t>(stride));
   for (int y0 = 0; y0 < s.height; y0 += 8) {
-    for (int x0 = 0; x0 < s.width; x0 += 8) {
-      Block planes[3];
-      for (int i = 0; i < 64; ++i) {
-        const float* p =
-            &channel(s, std::min(x0 + i % 8, s.width - 1), std::min(y0 + i / 8, s.height - 1), 0);
-        const float luma = 0.299f * p[0] + 0.587f * p[1] + 0.114f * p[2];
-        planes[0][i] = luma;
-        planes[1][i] = p[2] - luma;
-        planes[2][i] = p[0] - luma;
+    for (int y = 0; y < 8; ++y) {
+      float* const at[3] = {&planes[0][y * stride], &planes[1][y * stride], &planes[2][y * stride]};
+      const float* row = row_of(s, std::min(y0 + y, s.height - 1));
+      PS_FITTING(effects_kernel::part)(row, at[0], at[1], at[2], s.width);
+      for (float* p : at) std::fill(p + s.width, p + stride, p[s.width - 1]);
+    }
+    for (int c = 0; c < 3; ++c) {
+      for (int x = 0; x < s.width; x += 8) {
+        PS_FITTING(effects_kernel::quantise)
+        (&planes[c][x], stride, basis.data(), inverse.data(), steps[c > 0 ? 1 : 0].data());
       }
-      for (int c = 0; c < 3; ++c) {
-        transform(planes[c], false);
-        for (int i = 0; i < 64; ++i) {
-          const float step =
-              coarse * (c == 0 ? 1 : 2) * (1 + 0.6f * static_cast<float>(i % 8 + i / 8)) + 1e-5f;
-          planes[c][i] = std::nearbyint(planes[c][i] / step) * step;
-        }
-        transform(planes[c], true);
-      }
-      for (int i = 0; i < 64; ++i) {
-        const int x = x0 + i % 8, y = y0 + i / 8;
-        if (x >= s.width || y >= s.height) continue;
-        float* p = &channel(s, x, y, 0);
-        const float luma = planes[0][i], blue = planes[1][i] + luma, red = planes[2][i] + luma;
-        p[0] = clamp01(red);
-        p[1] = clamp01((luma - 0.299f * red - 0.114f * blue) / 0.587f);
-        p[2] = clamp01(blue);
-      }
+    }
+    for (int y = 0; y < 8 && y0 + y < s.height; ++y) {
+      PS_FITTING(effects_kernel::join)
+      (&planes[0][y * stride], &planes[1][y * stride], &planes[2][y * stride], row_of(s, y0 + y),
+       s.width);
     }
   }
 }
@@ -219,6 +209,7 @@ void degrade(Shot& shot, std::uint64_t seed, const EffectOptions& options) {
                 "three for each of " + std::to_string(shot.width) + "x" +
                     std::to_string(shot.height) + " pixels");
   }
+  if (shot.color.empty()) return;
   Dice d(seed, 4);
   tone(shot, d, options);
   focus(shot, d, options);

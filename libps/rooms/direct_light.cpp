@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libps/rooms/isa.h"
 #include "libps/rooms/light.h"
 
 namespace ps::rooms {
@@ -12,13 +13,8 @@ constexpr int kOwnRays = 2;       ///< groups of lights that are asked for certa
 constexpr float kFaint = 0.003f;  ///< irradiance that nobody sees
 constexpr int kMostRates = 192;   ///< emitters that are weighed for a packet
 
-/// The places of a packet, side by side for the compiler to turn into vectors.
-struct Places {
-  float x[kRays], y[kRays], z[kRays], nx[kRays], ny[kRays], nz[kRays];
-};
-
-Places places_of(const Lit* lit) {
-  Places p;
+light_kernel::Places places_of(const Lit* lit) {
+  light_kernel::Places p;
   for (int i = 0; i < kRays; ++i) {
     p.x[i] = lit[i].position.x;
     p.y[i] = lit[i].position.y;
@@ -28,20 +24,6 @@ Places places_of(const Lit* lit) {
     p.nz[i] = lit[i].normal.z;
   }
   return p;
-}
-
-/// About what an emitter would send to each place if nothing stood between.
-void weigh(const Emitter& e, const Places& p, float* out) {
-  const float size = e.radius * e.radius, over = 0.3f * e.radius, round = e.round ? 1.f : 0.f;
-  for (int i = 0; i < kRays; ++i) {
-    const float x = e.center.x - p.x[i], y = e.center.y - p.y[i], z = e.center.z - p.z[i];
-    const float square = x * x + y * y + z * z, d2 = square > 0.01f ? square : 0.01f;
-    const float s = p.nx[i] * x + p.ny[i] * y + p.nz[i] * z + over;
-    const float flat = -(e.normal.x * x + e.normal.y * y + e.normal.z * z);
-    // A ball shines the same way all around.
-    const float l = round * std::sqrt(d2) + (1 - round) * flat;
-    out[i] = e.area * (s > 0 ? s : 0.f) * (l > 0 ? l : 0.f) / (d2 * (d2 + size));
-  }
 }
 
 /// Where a shadow ray goes, and what comes from there if nothing stands between.
@@ -86,22 +68,39 @@ void add_samples(const Scene& scene, Lit* lit, const Sample* samples) {
 
 /// A group of lights as a packet sees it.
 struct Weighed {
-  const LightGroup* group = nullptr;
-  const float (*rates)[kRays] = nullptr;  ///< of each emitter at each place
-  float total[kRays] = {};                ///< brightness of all at each place
-  float sum = 0;
+  const LightGroup* group;
+  const float (*rates)[kRays];  ///< of each emitter at each place
+  float all[kRays];             ///< rates of all emitters at each place
+  float total[kRays];           ///< brightness of all; 0 where they do not shine
+  float sum;
 };
 
 /// A sample of the group at place i; `choice` in [0, 1) picks the emitter.
 Sample sample(const Weighed& w, const Lit& l, int i, float choice, float probability) {
   const int count = static_cast<int>(w.group->emitters.size());
-  float all = 0;
-  for (int e = 0; e < count; ++e) all += w.rates[e][i];
+  const float all = w.all[i];
   float left = choice * all;
   int pick = 0;
   while (pick + 1 < count && left >= w.rates[pick][i]) left -= w.rates[pick++][i];
   if (!(w.rates[pick][i] > 0)) return {};
   return sample(*w.group, w.group->emitters[pick], l, probability * w.rates[pick][i] / all);
+}
+
+/// Weighs a group; `lit` are the groups that shine at each place.
+/// @return false when it brings nothing to any place
+bool weigh(const LightGroup& group, std::uint32_t bit, const std::uint32_t* lit,
+           const light_kernel::Places& places, float (*rates)[kRays], Weighed& w) {
+  w.group = &group;
+  w.rates = rates;
+  w.sum = 0;
+  PS_FITTING(light_kernel::weigh)
+  (group.lamps.data(), static_cast<int>(group.lamps.size()), places, luminance(group.radiance),
+   rates, w.all, w.total);
+  for (int i = 0; i < kRays; ++i) {
+    if (w.total[i] < kFaint || (lit[i] & bit) == 0) w.total[i] = 0;
+    w.sum += w.total[i];
+  }
+  return w.sum > 0;
 }
 
 void add_sun(const Scene& scene, Lit* lit) {
@@ -127,37 +126,30 @@ void add_sun(const Scene& scene, Lit* lit) {
 }  // namespace
 
 void add_direct(const Scene& scene, Lit* lit) {
-  const Places places = places_of(lit);
+  std::uint32_t lit_by[kRays], any_lit = 0;
+  for (int i = 0; i < kRays; ++i) any_lit |= lit_by[i] = lit[i].space ? lit[i].space->lit_by : 0;
+  const light_kernel::Places places = places_of(lit);
   float rates[kMostRates][kRays];
   Weighed weighed[kMostLights];
+  Weighed* sorted[kMostLights];
   int used = 0, count = 0;
   for (std::size_t g = 0; g < scene.lights.size(); ++g) {
-    const LightGroup& group = scene.lights[g];
-    const int emitters = static_cast<int>(group.emitters.size());
-    bool lights = false;
-    for (int i = 0; i < kRays; ++i) lights |= lit[i].space && lit[i].space->lit_by[g];
-    if (!lights || used + emitters > kMostRates) continue;
-    Weighed& w = weighed[count] = {&group, rates + used};
-    for (int e = 0; e < emitters; ++e) weigh(group.emitters[e], places, rates[used + e]);
-    const float bright = luminance(group.radiance);
-    for (int i = 0; i < kRays; ++i) {
-      if (!lit[i].space || !lit[i].space->lit_by[g]) continue;
-      for (int e = 0; e < emitters; ++e) w.total[i] += rates[used + e][i] * bright;
-      if (w.total[i] < kFaint) w.total[i] = 0;
-      w.sum += w.total[i];
-    }
-    if (w.sum <= 0) continue;
+    const std::uint32_t bit = std::uint32_t{1} << g;
+    const int emitters = static_cast<int>(scene.lights[g].emitters.size());
+    if ((any_lit & bit) == 0 || used + emitters > kMostRates) continue;
+    if (!weigh(scene.lights[g], bit, lit_by, places, rates + used, weighed[count])) continue;
+    sorted[count] = &weighed[count];
     used += emitters;
     ++count;
   }
-  std::sort(weighed, weighed + count,
-            [](const Weighed& a, const Weighed& b) { return a.sum > b.sum; });
+  std::sort(sorted, sorted + count,
+            [](const Weighed* a, const Weighed* b) { return a->sum > b->sum; });
   // The strongest have rays of their own; of the others each place asks one.
   const int own = count <= kOwnRays + 1 ? count : kOwnRays;
   for (int g = 0; g < own; ++g) {
     Sample samples[kRays];
     for (int i = 0; i < kRays; ++i) {
-      if (weighed[g].total[i] > 0) samples[i] = sample(weighed[g], lit[i], i, lit[i].choice, 1);
+      if (sorted[g]->total[i] > 0) samples[i] = sample(*sorted[g], lit[i], i, lit[i].choice, 1);
     }
     add_samples(scene, lit, samples);
   }
@@ -165,14 +157,14 @@ void add_direct(const Scene& scene, Lit* lit) {
     Sample samples[kRays];
     for (int i = 0; i < kRays; ++i) {
       float all = 0;
-      for (int g = own; g < count; ++g) all += weighed[g].total[i];
+      for (int g = own; g < count; ++g) all += sorted[g]->total[i];
       if (all <= 0) continue;
       float left = lit[i].choice * all;
       int pick = own;
-      while (pick + 1 < count && left >= weighed[pick].total[i]) left -= weighed[pick++].total[i];
-      const float here = weighed[pick].total[i];
+      while (pick + 1 < count && left >= sorted[pick]->total[i]) left -= sorted[pick++]->total[i];
+      const float here = sorted[pick]->total[i];
       if (here <= 0) continue;
-      samples[i] = sample(weighed[pick], lit[i], i, std::min(left / here, 0.999f), here / all);
+      samples[i] = sample(*sorted[pick], lit[i], i, std::min(left / here, 0.999f), here / all);
     }
     add_samples(scene, lit, samples);
   }
@@ -181,7 +173,7 @@ void add_direct(const Scene& scene, Lit* lit) {
 
 void find_lights(const Scene& scene, Space& space) {
   constexpr int kPackets = 24;
-  space.lit_by.assign(scene.lights.size(), false);
+  space.lit_by = 0;
   space.sunny = luminance(scene.sky.sun_irradiance) > 0;
   bool sunny = false;
   const Vec size = space.high - space.low;
@@ -195,7 +187,8 @@ void find_lights(const Scene& scene, Space& space) {
       lit[i].t = hash(k, 5, 7);
     }
     for (std::size_t g = 0; g < scene.lights.size(); ++g) {
-      if (space.lit_by[g]) continue;
+      const std::uint32_t bit = std::uint32_t{1} << g;
+      if ((space.lit_by & bit) != 0) continue;
       const LightGroup& group = scene.lights[g];
       Sample samples[kRays];
       for (int i = 0; i < kRays; ++i) {
@@ -206,7 +199,7 @@ void find_lights(const Scene& scene, Space& space) {
       }
       add_samples(scene, lit, samples);
       for (const Lit& l : lit) {
-        if (luminance(l.irradiance) > kFaint) space.lit_by[g] = true;
+        if (luminance(l.irradiance) > kFaint) space.lit_by |= bit;
       }
     }
     if (!space.sunny || sunny) continue;

@@ -71,7 +71,7 @@ constexpr float kCreaseCosine = 0.75f;
 /// Corners are shared where the triangles around a position turn little.
 class MeshMaker {
  public:
-  explicit MeshMaker(const Model& m) : model_(m), around_(m.positions.size()) {}
+  explicit MeshMaker(const Model& m) : model_(m), first_(m.positions.size(), kNone) {}
 
   Mesh make() {
     for (const auto& t : model_.triangles) {
@@ -92,22 +92,29 @@ class MeshMaker {
   /// weighted by area.
   std::uint32_t corner(std::uint32_t position, Vec n) {
     const Vec facing = normalized(n);
-    for (const std::uint32_t c : around_[position]) {
-      if (dot(normalized(mesh_.corners[c].normal), facing) < kCreaseCosine) continue;
-      mesh_.corners[c].normal += n;
-      return c;
+    std::uint32_t* last = &first_[position];
+    for (; *last != kNone; last = &next_[*last]) {
+      Vec& normal = mesh_.corners[*last].normal;
+      if (dot(normalized(normal), facing) < kCreaseCosine) continue;
+      normal += n;
+      return *last;
     }
     const Vec p = to_vec(model_.positions[position]);
     const std::array<float, 2> uv =
         model_.uvs.empty() ? std::array<float, 2>{p.x, p.y} : model_.uvs[position];
+    const auto fresh = static_cast<std::uint32_t>(mesh_.corners.size());
+    *last = fresh;  // before next_ grows
+    next_.push_back(kNone);
     mesh_.corners.push_back({p, n, uv[0], uv[1]});
-    around_[position].push_back(static_cast<std::uint32_t>(mesh_.corners.size() - 1));
-    return around_[position].back();
+    return fresh;
   }
+
+  static constexpr std::uint32_t kNone = 0xffffffff;
 
   const Model& model_;
   Mesh mesh_;
-  std::vector<std::vector<std::uint32_t>> around_;  ///< corners at each position
+  std::vector<std::uint32_t> first_;  ///< corner at each position
+  std::vector<std::uint32_t> next_;   ///< corner at the same position, of each corner
 };
 
 /// Whether the name has this word, or a plural of it.
@@ -183,7 +190,6 @@ StoredModel to_stored(const Model& m) {
   s.role = role_of(m, s.size());
   s.use = use_of(m, s.size());
   s.flat_top = has_flat_top(s);
-  s.tree = Tree(s.mesh);
   for (const auto& material : m.materials) s.materials.push_back(to_material(material));
   for (const auto& texture : m.textures) s.pictures.emplace_back(texture);
   return s;
@@ -208,6 +214,11 @@ Furniture::Furniture(const std::vector<Model>& models) {
     store->models.push_back(std::move(s));
   }
   store_ = std::move(store);
+}
+
+const Tree& StoredModel::tree() const {
+  std::call_once(late_->once, [&] { late_->tree = Tree(mesh); });
+  return late_->tree;
 }
 
 std::size_t Furniture::size() const { return store_->models.size(); }

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -26,11 +28,19 @@ struct StoredModel {
   Vec low, high;
   bool flat_top = false;  ///< things can stand on it
   Mesh mesh;
-  Tree tree;
   std::vector<Material> materials;
   std::vector<Picture> pictures;
 
   Vec size() const { return high - low; }
+  /// The mesh's tree, built when it is first asked for; by any thread.
+  const Tree& tree() const;
+
+ private:
+  struct Late {
+    std::once_flag once;
+    Tree tree;
+  };
+  std::unique_ptr<Late> late_ = std::make_unique<Late>();
 };
 
 struct FurnitureStore {

@@ -10,6 +10,7 @@ namespace {
 constexpr float kPi = 3.14159265f;
 constexpr int kDirections = 3 * kRays;  ///< rays of a probe
 constexpr int kBounces = 3;
+const std::array<Four, 6> kDark = {};  ///< a probe's cube
 
 /// What a probe's ray met.
 struct Met {
@@ -36,7 +37,7 @@ void lay_probes(Space& s) {
   const Vec inner = size - edge * 2;
   p.step = {inner.x / static_cast<float>(p.nx - 1), inner.y / static_cast<float>(p.ny - 1),
             inner.z / static_cast<float>(p.nz - 1)};
-  p.cubes.assign(static_cast<std::size_t>(p.nx) * p.ny * p.nz, {});
+  p.cubes.assign(static_cast<std::size_t>(p.nx) * p.ny * p.nz, kDark);
 }
 
 /// Sixteen rays of a probe; @return how many saw the back of something.
@@ -93,27 +94,27 @@ void bake_space(const Scene& scene, Space& space, std::vector<Vec>* seen,
   }
   for (int bounce = 0; bounce < kBounces; ++bounce) {
     Probes next = p;
-    next.cubes.assign(count, {});
+    next.cubes.assign(count, kDark);
     for (const Met& m : met) {
       const Vec out = m.albedo * (m.direct + p.irradiance(m.position, m.normal)) * (1 / kPi);
       const float d[6] = {m.direction.x,  -m.direction.x, m.direction.y,
                           -m.direction.y, m.direction.z,  -m.direction.z};
       for (int f = 0; f < 6; ++f) {
-        if (d[f] > 0) next.cubes[m.probe][f] += out * (d[f] * 4 * kPi / kDirections);
+        if (d[f] > 0) next.cubes[m.probe][f] += four(out) * (d[f] * 4 * kPi / kDirections);
       }
       if (seen && bounce == kBounces - 1) {
         seen->push_back(m.albedo);
         lights->push_back((m.direct + p.irradiance(m.position, m.normal)) * (1 / kPi));
       }
     }
-    std::array<Vec, 6> mean{};
+    std::array<Four, 6> mean = kDark;
     int outside = 0;
     for (int i = 0; i < count; ++i) {
       if (inside[i]) continue;
       ++outside;
       for (int f = 0; f < 6; ++f) mean[f] += next.cubes[i][f];
     }
-    for (Vec& m : mean) m *= 1 / static_cast<float>(std::max(1, outside));
+    for (Four& m : mean) m *= 1 / static_cast<float>(std::max(1, outside));
     for (int i = 0; i < count; ++i) {
       if (inside[i]) next.cubes[i] = mean;
     }

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "libps/rooms/four.h"
+
 namespace ps::rooms {
 namespace {
 
@@ -149,24 +151,24 @@ const std::array<float, 256>& linear_table() {
 
 }  // namespace
 
-float hash(int x, int y, std::uint32_t seed) {
-  std::uint32_t h = static_cast<std::uint32_t>(x) * 0x8da6b343u ^
-                    static_cast<std::uint32_t>(y) * 0xd8163841u ^ seed * 0xcb1ab31fu;
+float noise(float x, float y, std::uint32_t seed) {
+  typedef std::uint32_t Bits __attribute__((vector_size(16)));
+  typedef std::int32_t Whole __attribute__((vector_size(16)));
+  const int i = floor_of(x), j = floor_of(y);
+  float a = x - static_cast<float>(i), b = y - static_cast<float>(j);
+  a = a * a * (3 - 2 * a);
+  b = b * b * (3 - 2 * b);
+  // hash() at (i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1), side by side.
+  const std::uint32_t x0 = static_cast<std::uint32_t>(i) * 0x8da6b343u, x1 = x0 + 0x8da6b343u;
+  const std::uint32_t y0 = static_cast<std::uint32_t>(j) * 0xd8163841u, y1 = y0 + 0xd8163841u;
+  Bits h = Bits{x0 ^ y0, x1 ^ y0, x0 ^ y1, x1 ^ y1} ^ (seed * 0xcb1ab31fu);
   h ^= h >> 15;
   h *= 0x2c1b3c6du;
   h ^= h >> 12;
   h *= 0x297a2d39u;
   h ^= h >> 15;
-  return static_cast<float>(h >> 8) * 0x1p-24f;
-}
-
-float noise(float x, float y, std::uint32_t seed) {
-  const int i = floor_of(x), j = floor_of(y);
-  float a = x - static_cast<float>(i), b = y - static_cast<float>(j);
-  a = a * a * (3 - 2 * a);
-  b = b * b * (3 - 2 * b);
-  return mix(mix(hash(i, j, seed), hash(i + 1, j, seed), a),
-             mix(hash(i, j + 1, seed), hash(i + 1, j + 1, seed), a), b);
+  const Four v = __builtin_convertvector(reinterpret_cast<Whole>(h >> 8), Four) * 0x1p-24f;
+  return mix(mix(v[0], v[1], a), mix(v[2], v[3], a), b);
 }
 
 Vec albedo(const Material& m, const std::vector<Picture>& pictures, float u, float v,

@@ -67,7 +67,16 @@ Vec albedo(const Material& m, const std::vector<Picture>& pictures, float u, flo
            float footprint);
 
 /// In [0, 1), a function of the place.
-float hash(int x, int y, std::uint32_t seed);
+inline float hash(int x, int y, std::uint32_t seed) {
+  std::uint32_t h = static_cast<std::uint32_t>(x) * 0x8da6b343u ^
+                    static_cast<std::uint32_t>(y) * 0xd8163841u ^ seed * 0xcb1ab31fu;
+  h ^= h >> 15;
+  h *= 0x2c1b3c6du;
+  h ^= h >> 12;
+  h *= 0x297a2d39u;
+  h ^= h >> 15;
+  return static_cast<float>(h >> 8) * 0x1p-24f;
+}
 /// Smooth noise in [0, 1], of period 1.
 float noise(float x, float y, std::uint32_t seed);
 

@@ -30,7 +30,7 @@ void place(Set& set, const StoredModel& m, const Frame& f) {
   if (set.scene.parts.size() + 2 >= kMostParts) return;
   Part p;
   p.mesh = &m.mesh;
-  p.tree = &m.tree;
+  p.tree = &m.tree();
   p.materials = &m.materials;
   p.pictures = &m.pictures;
   p.placed = true;

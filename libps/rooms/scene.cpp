@@ -7,22 +7,10 @@ namespace ps::rooms {
 namespace {
 
 /// World to part: axes are at right angles.
-Vec inward(const Frame& f, Vec d) {
-  return {dot(d, f.ex) / dot(f.ex, f.ex), dot(d, f.ey) / dot(f.ey, f.ey),
-          dot(d, f.ez) / dot(f.ez, f.ez)};
-}
-
-/// The packet in the frame of a part.
-void to_part(const Part& part, const Rays& rays, Rays& local) {
-  clear(local);
-  for (int i = 0; i < kRays; ++i) {
-    if (rays.reach[i] <= 0) continue;
-    set_ray(local, i,
-            inward(part.world, Vec{rays.origin[0][i], rays.origin[1][i], rays.origin[2][i]} -
-                                   part.world.origin),
-            inward(part.world, {rays.direction[0][i], rays.direction[1][i], rays.direction[2][i]}),
-            rays.reach[i]);
-  }
+trace_kernel::Axes axes_of(const Frame& f) {
+  return {{{f.ex.x, f.ex.y, f.ex.z}, {f.ey.x, f.ey.y, f.ey.z}, {f.ez.x, f.ez.y, f.ez.z}},
+          {dot(f.ex, f.ex), dot(f.ey, f.ey), dot(f.ez, f.ez)},
+          {f.origin.x, f.origin.y, f.origin.z}};
 }
 
 constexpr int kOwnParts = 2;  ///< the scene's meshes, before the placed models
@@ -36,15 +24,15 @@ void Scene::nearest(Rays& rays) const {
   for (int m = 0; m < count; ++m) {
     const int p = kOwnParts + static_cast<int>(models[m]);
     Rays local;
-    to_part(parts[p], rays, local);
+    enter(axes_of(parts[p].world), rays, local);
     rooms::nearest(*parts[p].tree, p, local);
     for (int i = 0; i < kRays; ++i) {
-      if (local.face[i] < 0) continue;
-      rays.reach[i] = local.reach[i];
-      rays.u[i] = local.u[i];
-      rays.v[i] = local.v[i];
-      rays.face[i] = local.face[i];
-      rays.part[i] = p;
+      const bool hit = local.face[i] >= 0;
+      rays.reach[i] = hit ? local.reach[i] : rays.reach[i];
+      rays.u[i] = hit ? local.u[i] : rays.u[i];
+      rays.v[i] = hit ? local.v[i] : rays.v[i];
+      rays.face[i] = hit ? local.face[i] : rays.face[i];
+      rays.part[i] = hit ? p : rays.part[i];
     }
   }
 }
@@ -58,11 +46,9 @@ void Scene::blocked(Rays& rays) const {
   for (int m = 0; m < count; ++m) {
     const Part& part = parts[kOwnParts + models[m]];
     Rays local;
-    to_part(part, rays, local);
+    enter(axes_of(part.world), rays, local);
     rooms::blocked(*part.tree, local);
-    for (int i = 0; i < kRays; ++i) {
-      if (local.reach[i] < 0) rays.reach[i] = -1;
-    }
+    for (int i = 0; i < kRays; ++i) rays.reach[i] = local.reach[i] < 0 ? -1.f : rays.reach[i];
   }
 }
 
@@ -73,6 +59,11 @@ void LightGroup::add(Emitter e) {
   const auto count = static_cast<float>(emitters.size());
   middle = (middle * count + e.center) * (1 / (count + 1));
   emitters.push_back(e);
+  lamps.push_back({{e.center.x, e.center.y, e.center.z},
+                   {e.normal.x, e.normal.y, e.normal.z},
+                   e.area,
+                   e.radius,
+                   e.round ? 1.f : 0.f});
   area += e.area;
 }
 
@@ -181,14 +172,14 @@ Vec Probes::irradiance(Vec p, Vec n) const {
               c = axis(p.z, low.z, step.z, nz, k);
   const float nn[3] = {n.x * n.x, n.y * n.y, n.z * n.z};
   const int face[3] = {n.x > 0 ? 0 : 1, n.y > 0 ? 2 : 3, n.z > 0 ? 4 : 5};
-  Vec sum;
+  Four sum = four(0);
   for (int corner = 0; corner < 8; ++corner) {
     const int di = corner & 1, dj = corner >> 1 & 1, dk = corner >> 2;
     const float w = (di ? a : 1 - a) * (dj ? b : 1 - b) * (dk ? c : 1 - c);
     const auto& cube = cubes[(static_cast<std::size_t>(k + dk) * ny + j + dj) * nx + i + di];
     sum += (cube[face[0]] * nn[0] + cube[face[1]] * nn[1] + cube[face[2]] * nn[2]) * w;
   }
-  return sum;
+  return vec(sum);
 }
 
 }  // namespace ps::rooms

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "libps/rooms/four.h"
 #include "libps/rooms/furniture_store.h"
+#include "libps/rooms/light_kernel.h"
 #include "libps/rooms/mesh.h"
 #include "libps/rooms/room.h"
 #include "libps/rooms/tree.h"
@@ -33,11 +35,12 @@ struct Emitter {
 };
 
 constexpr std::size_t kMostEmitters = 48;  ///< of a group
-constexpr std::size_t kMostLights = 32;    ///< groups of a scene
+constexpr std::size_t kMostLights = 32;    ///< groups of a scene, a bit for each
 
 /// Lights of one radiance that are sampled together.
 struct LightGroup {
   std::vector<Emitter> emitters;
+  std::vector<light_kernel::Lamp> lamps;  ///< the emitters as they are weighed
   Vec radiance;
   Vec middle;
   float area = 0;  ///< of all
@@ -60,7 +63,7 @@ struct Sky {
 struct Probes {
   Vec low, step;
   int nx = 0, ny = 0, nz = 0;
-  std::vector<std::array<Vec, 6>> cubes;
+  std::vector<std::array<Four, 6>> cubes;
 
   Vec irradiance(Vec position, Vec normal) const;
 };
@@ -72,7 +75,7 @@ struct Space {
   float height = 2.5f;
   Vec low, high;
   Probes probes;
-  std::vector<bool> lit_by;  ///< for each group of lights
+  std::uint32_t lit_by = 0;  ///< a bit for each group of lights
   bool sunny = false;
 
   bool holds(Vec p, float grow = 0) const;

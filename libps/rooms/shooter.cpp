@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "libps/rooms/isa.h"
+#include "libps/rooms/plane_kernel.h"
 #include "libps/rooms/view_rays.h"
 
 namespace ps::rooms {
@@ -71,17 +73,28 @@ class ToneCurve {
       table_[i] = srgb_from_linear(x < 0.6f ? x : 0.6f + 0.4f * (1 - std::exp((0.6f - x) / 0.4f)));
     }
   }
-  float operator()(float x) const {
-    const float at = std::sqrt(std::clamp(x / kMost, 0.f, 0.9999f)) * kSteps;
-    const int i = static_cast<int>(at);
-    return mix(table_[i], table_[i + 1], at - static_cast<float>(i));
+  void apply(float* values, int count) const {
+    look_({table_.data(), kSteps, kMost, true}, values, values, count);
   }
 
  private:
   static constexpr int kSteps = 1024;
   static constexpr float kMost = 4;
   std::array<float, kSteps + 1> table_;
+  plane_kernel::Look* look_ = PS_FITTING(plane_kernel::look);
 };
+
+/// As the camera shows light: sRGB, in place.
+void show(float* values, int count) {
+  static const ToneCurve curve;
+  curve.apply(values, count);
+}
+
+void put(float* at, Vec v) {
+  at[0] = v.x;
+  at[1] = v.y;
+  at[2] = v.z;
+}
 
 }  // namespace
 
@@ -102,18 +115,14 @@ Shot Shooter::shoot() {
   plane_.smooth_light();
   plane_.smooth_mirror();
   const std::size_t n = plane_.pixels.size();
-  std::vector<Vec> colors(n);
+  Shot shot{plane_.width, plane_.height, std::vector<float>(3 * n), {}};
   for (std::size_t i = 0; i < n; ++i) {
     if (plane_.pixels[i].material) plane_.light[i] = scene_.evened(plane_.light[i]);
-    colors[i] = shown(radiance(plane_.pixels[i], i));
+    put(&shot.color[3 * i], radiance(plane_.pixels[i], i) * scene_.exposure);
   }
-  smooth_edges(colors);
-  Shot shot{plane_.width, plane_.height, std::vector<float>(3 * n), std::move(plane_.depth)};
-  for (std::size_t i = 0; i < n; ++i) {
-    shot.color[3 * i] = colors[i].x;
-    shot.color[3 * i + 1] = colors[i].y;
-    shot.color[3 * i + 2] = colors[i].z;
-  }
+  show(shot.color.data(), static_cast<int>(3 * n));
+  smooth_edges(shot.color);
+  shot.depth = std::move(plane_.depth);
   return shot;
 }
 
@@ -277,20 +286,17 @@ Vec Shooter::radiance(const Pixel& p, std::size_t i) const {
   return out + m.emission * (m.pattern == Pattern::picture ? p.albedo : Vec{1, 1, 1});
 }
 
-Vec Shooter::shown(Vec radiance) const {
-  static const ToneCurve curve;
-  radiance *= scene_.exposure;
-  return {curve(radiance.x), curve(radiance.y), curve(radiance.z)};
-}
-
-void Shooter::smooth_edges(std::vector<Vec>& colors) const {
+void Shooter::smooth_edges(std::vector<float>& colors) const {
   constexpr int kExtra = 3;
   static const float offset[kExtra][2] = {{-0.33f, -0.1f}, {0.1f, 0.33f}, {0.25f, -0.33f}};
   const std::vector<std::uint32_t> todo = plane_.edges();
   for (std::size_t first = 0; first < todo.size(); first += kRays) {
     const int count = static_cast<int>(std::min<std::size_t>(kRays, todo.size() - first));
     Vec sums[kRays];
-    for (int k = 0; k < count; ++k) sums[k] = colors[todo[first + k]];
+    for (int k = 0; k < count; ++k) {
+      const float* c = &colors[3 * static_cast<std::size_t>(todo[first + k])];
+      sums[k] = {c[0], c[1], c[2]};
+    }
     for (const auto& o : offset) {
       Rays rays;
       clear(rays);
@@ -302,15 +308,22 @@ void Shooter::smooth_edges(std::vector<Vec>& colors) const {
                 kFarthest);
       }
       scene_.nearest(rays);
-      for (int k = 0; k < count; ++k) sums[k] += extra(rays, k, todo[first + k]);
+      float more[3 * kRays];
+      for (int k = 0; k < count; ++k) {
+        put(more + 3 * k, extra(rays, k, todo[first + k]) * scene_.exposure);
+      }
+      show(more, 3 * count);
+      for (int k = 0; k < count; ++k) sums[k] += {more[3 * k], more[3 * k + 1], more[3 * k + 2]};
     }
-    for (int k = 0; k < count; ++k) colors[todo[first + k]] = sums[k] * (1.f / (kExtra + 1));
+    for (int k = 0; k < count; ++k) {
+      put(&colors[3 * static_cast<std::size_t>(todo[first + k])], sums[k] * (1.f / (kExtra + 1)));
+    }
   }
 }
 
 /// Its light is that of the pixel around whose surface is likest.
 Vec Shooter::extra(const Rays& rays, int k, std::size_t i) const {
-  if (rays.face[k] < 0) return shown(scene_.sky.radiance(direction_of(rays, k)));
+  if (rays.face[k] < 0) return scene_.sky.radiance(direction_of(rays, k));
   const Pixel p = see(rays, k);
   const int x0 = static_cast<int>(i % plane_.width), y0 = static_cast<int>(i / plane_.width);
   std::size_t best = i;
@@ -329,7 +342,7 @@ Vec Shooter::extra(const Rays& rays, int k, std::size_t i) const {
       }
     }
   }
-  return shown(plane_.pixels[best].material ? radiance(p, best) : p.albedo);
+  return plane_.pixels[best].material ? radiance(p, best) : p.albedo;
 }
 
 }  // namespace ps::rooms

@@ -26,12 +26,12 @@ class Shooter {
   void reflect();
   void reflect(const std::uint32_t* pixels, int count);
   /// More rays where surfaces meet.
-  void smooth_edges(std::vector<Vec>& colors) const;
+  /// @param colors  three for each pixel
+  void smooth_edges(std::vector<float>& colors) const;
+  /// What ray k, near the middle of pixel i, brings to the eye.
   Vec extra(const Rays& rays, int k, std::size_t i) const;
   /// What a surface sends to the eye in the light of pixel i.
   Vec radiance(const Pixel& p, std::size_t i) const;
-  /// As the camera shows it: sRGB.
-  Vec shown(Vec radiance) const;
 
   const Scene& scene_;
   const Camera& camera_;

@@ -3,9 +3,7 @@
 // Loops over the rays of a packet are left to the compiler to turn into vectors.
 #include "libps/rooms/trace_kernel.h"
 
-#if defined(__AVX2__)
-#include <immintrin.h>
-#endif
+#include "libps/rooms/lanes.h"
 
 #define PS_JOIN2(a, b) a##b
 #define PS_JOIN(a, b) PS_JOIN2(a, b)
@@ -18,37 +16,34 @@ namespace {
 /// A surface does not shade itself, and a crack between triangles is closed.
 constexpr float kNear = 1e-5f, kOutside = -1e-5f;
 
-inline float smaller(float a, float b) { return a < b ? a : b; }
-inline float larger(float a, float b) { return a > b ? a : b; }
+constexpr int kParts = kRays / kLanes;  ///< vectors of a packet
 
-/// @return whether any a is at most its b
-inline bool any_at_most(const float* a, const float* b) {
-#if defined(__AVX512F__)
-  return _mm512_cmp_ps_mask(_mm512_load_ps(a), _mm512_load_ps(b), _CMP_LE_OQ) != 0;
-#elif defined(__AVX2__)
-  const __m256 low = _mm256_cmp_ps(_mm256_load_ps(a), _mm256_load_ps(b), _CMP_LE_OQ);
-  const __m256 high = _mm256_cmp_ps(_mm256_load_ps(a + 8), _mm256_load_ps(b + 8), _CMP_LE_OQ);
-  return _mm256_movemask_ps(_mm256_or_ps(low, high)) != 0;
-#else
-  int any = 0;
-  for (int i = 0; i < kRays; ++i) any |= a[i] <= b[i] ? 1 : 0;
-  return any != 0;
-#endif
-}
+/// Where each ray comes into a box and leaves it.
+struct Span {
+  Lanes in[kParts], out[kParts];
 
-inline bool meets_box(const TraceNode& n, const Rays& r) {
-  alignas(64) float in[kRays], out[kRays];
-  for (int i = 0; i < kRays; ++i) {
-    const float ax = (n.low[0] - r.origin[0][i]) * r.inverse[0][i];
-    const float bx = (n.high[0] - r.origin[0][i]) * r.inverse[0][i];
-    const float ay = (n.low[1] - r.origin[1][i]) * r.inverse[1][i];
-    const float by = (n.high[1] - r.origin[1][i]) * r.inverse[1][i];
-    const float az = (n.low[2] - r.origin[2][i]) * r.inverse[2][i];
-    const float bz = (n.high[2] - r.origin[2][i]) * r.inverse[2][i];
-    in[i] = larger(larger(smaller(ax, bx), smaller(ay, by)), larger(smaller(az, bz), 0.f));
-    out[i] = smaller(smaller(larger(ax, bx), larger(ay, by)), smaller(larger(az, bz), r.reach[i]));
+  bool met() const {
+    bool any = false;
+    for (int p = 0; p < kParts; ++p) any |= any_at_most(in[p], out[p]);
+    return any;
   }
-  return any_at_most(in, out);
+};
+
+inline Span cross_box(const TraceNode& n, const Rays& r) {
+  Span s;
+  for (int p = 0; p < kParts; ++p) {
+    const int i = p * kLanes;
+    const Lanes ox = load(r.origin[0] + i), oy = load(r.origin[1] + i), oz = load(r.origin[2] + i);
+    const Lanes ix = load(r.inverse[0] + i), iy = load(r.inverse[1] + i),
+                iz = load(r.inverse[2] + i);
+    const Lanes ax = (n.low[0] - ox) * ix, bx = (n.high[0] - ox) * ix;
+    const Lanes ay = (n.low[1] - oy) * iy, by = (n.high[1] - oy) * iy;
+    const Lanes az = (n.low[2] - oz) * iz, bz = (n.high[2] - oz) * iz;
+    s.in[p] = larger(larger(smaller(ax, bx), smaller(ay, by)), larger(smaller(az, bz), Lanes{}));
+    s.out[p] = smaller(smaller(larger(ax, bx), larger(ay, by)),
+                       smaller(larger(az, bz), load(r.reach + i)));
+  }
+  return s;
 }
 
 /// Moeller and Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection" (1997).
@@ -108,70 +103,118 @@ inline int lead(const Rays& r) {
   return -1;
 }
 
-}  // namespace
+/// Boxes that were met and wait, and where each ray comes into them.
+struct Waiting {
+  static constexpr int kMost = 64;
+  static constexpr float kNever = 3e38f;
 
-void PS_JOIN(nearest_, PS_ISA)(const TraceNode* nodes, const TraceTriangle* triangles, int part,
-                               Rays* rays) {
-  const int first = lead(*rays);
-  if (first < 0) return;
-  uint32_t stack[64];
-  int size = 0;
-  stack[size++] = 0;
-  while (size > 0) {
-    const TraceNode& node = nodes[stack[--size]];
-    if (!meets_box(node, *rays)) continue;
-    if (node.count > 0) {
-      for (uint32_t t = node.first; t < node.first + node.count; ++t) {
-        keep_nearest(triangles[t], part, rays);
+  Lanes in[kMost][kParts];
+  uint32_t node[kMost];
+  int count;
+
+  void push(uint32_t which, const Span& s) {
+    for (int p = 0; p < kParts; ++p) {
+      in[count][p] = s.in[p] <= s.out[p] ? s.in[p] : all_lanes(kNever);
+    }
+    node[count++] = which;
+  }
+  /// @return false when no box is left that a ray still reaches
+  bool pop(const Rays& r, uint32_t& which) {
+    while (count > 0) {
+      which = node[--count];
+      for (int p = 0; p < kParts; ++p) {
+        if (any_at_most(in[count][p], load(r.reach + p * kLanes))) return true;
       }
-    } else {
-      const uint32_t swap = rays->direction[node.axis][first] > 0 ? 0 : 1;
-      stack[size++] = node.first + 1 - swap;
-      stack[size++] = node.first + swap;
+    }
+    return false;
+  }
+};
+
+/// Visits the leaves that the rays may reach, nearer ones mostly first, both children of a node at
+/// once.
+/// @param leaf  (node) -> false to stop
+template <typename Leaf>
+inline void walk(const TraceNode* nodes, const Rays& rays, const Leaf& leaf) {
+  const int first = lead(rays);
+  if (first < 0) return;
+  if (!cross_box(nodes[0], rays).met()) return;
+  Waiting waiting;
+  waiting.count = 0;
+  uint32_t at = 0;
+  for (;;) {
+    const TraceNode& node = nodes[at];
+    if (node.count > 0) {
+      if (!leaf(node) || !waiting.pop(rays, at)) return;
+      continue;
+    }
+    const uint32_t swap = rays.direction[node.axis][first] > 0 ? 0 : 1;
+    const uint32_t nearer = node.first + swap, further = node.first + 1 - swap;
+    const Span near = cross_box(nodes[nearer], rays), far = cross_box(nodes[further], rays);
+    const bool meets_far = far.met();
+    if (near.met()) {
+      if (meets_far) waiting.push(further, far);
+      at = nearer;
+    } else if (meets_far) {
+      at = further;
+    } else if (!waiting.pop(rays, at)) {
+      return;
     }
   }
 }
 
-void PS_JOIN(blocked_, PS_ISA)(const TraceNode* nodes, const TraceTriangle* triangles, Rays* rays) {
-  const int first = lead(*rays);
-  if (first < 0) return;
-  uint32_t stack[64];
-  int size = 0;
-  stack[size++] = 0;
-  while (size > 0) {
-    const TraceNode& node = nodes[stack[--size]];
-    if (!meets_box(node, *rays)) continue;
-    if (node.count > 0) {
-      for (uint32_t t = node.first; t < node.first + node.count; ++t) {
-        if (!stop_blocked(triangles[t], rays)) return;
-      }
-    } else {
-      const uint32_t swap = rays->direction[node.axis][first] > 0 ? 0 : 1;
-      stack[size++] = node.first + 1 - swap;
-      stack[size++] = node.first + swap;
+/// Directions that are nearly 0 along an axis run along it, very far.
+inline float inverse_of(float d) {
+  const float size = d < 0 ? -d : d;
+  return 1 / (size > 1e-12f ? d : 1e-12f);
+}
+
+}  // namespace
+
+void PS_JOIN(enter_, PS_ISA)(const Axes& f, const Rays& rays, Rays& local) {
+  for (int i = 0; i < kRays; ++i) {
+    const float x = rays.origin[0][i] - f.origin[0], y = rays.origin[1][i] - f.origin[1],
+                z = rays.origin[2][i] - f.origin[2];
+    const float dx = rays.direction[0][i], dy = rays.direction[1][i], dz = rays.direction[2][i];
+    for (int a = 0; a < 3; ++a) {
+      const float* e = f.axis[a];
+      local.origin[a][i] = (x * e[0] + y * e[1] + z * e[2]) / f.square[a];
+      const float d = (dx * e[0] + dy * e[1] + dz * e[2]) / f.square[a];
+      local.direction[a][i] = d;
+      local.inverse[a][i] = inverse_of(d);
     }
+    local.reach[i] = rays.reach[i] > 0 ? rays.reach[i] : -1.f;
+    local.u[i] = local.v[i] = 0;
+    local.face[i] = local.part[i] = -1;
   }
+}
+
+void PS_JOIN(nearest_, PS_ISA)(const TraceNode* nodes, const TraceTriangle* triangles, int part,
+                               Rays* rays) {
+  walk(nodes, *rays, [&](const TraceNode& node) {
+    for (uint32_t t = node.first; t < node.first + node.count; ++t) {
+      keep_nearest(triangles[t], part, rays);
+    }
+    return true;
+  });
+}
+
+void PS_JOIN(blocked_, PS_ISA)(const TraceNode* nodes, const TraceTriangle* triangles, Rays* rays) {
+  walk(nodes, *rays, [&](const TraceNode& node) {
+    for (uint32_t t = node.first; t < node.first + node.count; ++t) {
+      if (!stop_blocked(triangles[t], rays)) return false;
+    }
+    return true;
+  });
 }
 
 int PS_JOIN(reached_, PS_ISA)(const TraceNode* nodes, const TraceTriangle* triangles,
                               const Rays* rays, uint32_t* out) {
-  const int first = lead(*rays);
-  if (first < 0) return 0;
-  uint32_t stack[64];
-  int size = 0, count = 0;
-  stack[size++] = 0;
-  while (size > 0) {
-    const TraceNode& node = nodes[stack[--size]];
-    if (!meets_box(node, *rays)) continue;
-    if (node.count > 0) {
-      for (uint32_t t = node.first; t < node.first + node.count; ++t)
-        out[count++] = triangles[t].face;
-    } else {
-      const uint32_t swap = rays->direction[node.axis][first] > 0 ? 0 : 1;
-      stack[size++] = node.first + 1 - swap;
-      stack[size++] = node.first + swap;
-    }
-  }
+  int count = 0;
+  walk(nodes, *rays, [&](const TraceNode& node) {
+    for (uint32_t t = node.first; t < node.first + node.count; ++t)
+      out[count++] = triangles[t].face;
+    return true;
+  });
   return count;
 }
 

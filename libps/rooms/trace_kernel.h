@@ -42,6 +42,15 @@ typedef void Blocked(const TraceNode* nodes, const TraceTriangle* triangles, Ray
 typedef int Reached(const TraceNode* nodes, const TraceTriangle* triangles, const Rays* rays,
                     uint32_t* out);
 
+/// A frame of axes at right angles, perhaps longer than 1.
+struct Axes {
+  float axis[3][3], square[3];  ///< square: of each axis's length
+  float origin[3];
+};
+/// The packet in that frame.
+typedef void Enter(const Axes& axes, const Rays& rays, Rays& local);
+
+Enter enter_baseline, enter_avx2, enter_avx512;
 Nearest nearest_baseline, nearest_avx2, nearest_avx512;
 Blocked blocked_baseline, blocked_avx2, blocked_avx512;
 Reached reached_baseline, reached_avx2, reached_avx512;

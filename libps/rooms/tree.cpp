@@ -5,6 +5,9 @@
 #include <cstdint>
 #include <limits>
 
+#include "libps/rooms/four.h"
+#include "libps/rooms/isa.h"
+
 namespace ps::rooms {
 namespace {
 
@@ -13,9 +16,9 @@ constexpr int kLargestLeaf = 4;  ///< triangles
 constexpr int kDeepest = 56;     ///< the kernel's stack holds 64
 
 struct Box {
-  Vec low = {1e30f, 1e30f, 1e30f}, high = {-1e30f, -1e30f, -1e30f};
+  Four low = four(1e30f), high = four(-1e30f);
 
-  void add(Vec p) {
+  void add(Four p) {
     low = min(low, p);
     high = max(high, p);
   }
@@ -24,16 +27,14 @@ struct Box {
     high = max(high, b.high);
   }
   float half_area() const {
-    const Vec d = high - low;
-    return d.x < 0 ? 0 : d.x * d.y + d.y * d.z + d.z * d.x;
+    const Four d = high - low;
+    return d[0] < 0 ? 0 : d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
   }
 };
 
-float along(Vec v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
-
 struct Item {
   Box box;
-  Vec center;
+  Four center;
   std::uint32_t face;
 };
 
@@ -42,21 +43,35 @@ struct Split {
   float place = 0;
 };
 
+/// Items by where their centres lie between `low` and `low + extent`, along each axis.
+struct Bins {
+  Box boxes[3][kBins];
+  int counts[3][kBins] = {};
+
+  Bins(const Item* items, int count, Four low, Four extent) {
+    const Four safe = extent > 1e-6f ? extent : four(1);
+    for (int i = 0; i < count; ++i) {
+      const Four place = (items[i].center - low) / safe * static_cast<float>(kBins);
+      for (int axis = 0; axis < 3; ++axis) {
+        const int bin = std::min(kBins - 1, static_cast<int>(place[axis]));
+        boxes[axis][bin].add(items[i].box);
+        ++counts[axis][bin];
+      }
+    }
+  }
+};
+
 /// The cheapest of the planes between bins, over the three axes.
 Split best_split(const Item* items, int count, const Box& centers) {
+  const Four extents = centers.high - centers.low;
+  const Bins bins(items, count, centers.low, extents);
   Split best;
   float best_cost = std::numeric_limits<float>::max();
   for (int axis = 0; axis < 3; ++axis) {
-    const float low = along(centers.low, axis), extent = along(centers.high, axis) - low;
+    const float low = centers.low[axis], extent = extents[axis];
     if (!(extent > 1e-6f)) continue;
-    Box boxes[kBins];
-    int counts[kBins] = {};
-    for (int i = 0; i < count; ++i) {
-      const int bin = std::min(
-          kBins - 1, static_cast<int>((along(items[i].center, axis) - low) / extent * kBins));
-      boxes[bin].add(items[i].box);
-      ++counts[bin];
-    }
+    const Box* boxes = bins.boxes[axis];
+    const int* counts = bins.counts[axis];
     float right_cost[kBins];
     Box right;
     int right_count = 0;
@@ -83,8 +98,16 @@ Split best_split(const Item* items, int count, const Box& centers) {
 
 class Builder {
  public:
-  Builder(std::vector<Item>& items, std::vector<TraceNode>& nodes, int leaf)
-      : items_(items), nodes_(nodes), leaf_(leaf) {}
+  Builder(std::vector<Item>& items, std::vector<Tree::Pair>& pairs, int leaf)
+      : items_(items), pairs_(pairs), leaf_(leaf) {}
+
+  void build() {
+    pairs_.resize(1);
+    build(0, 0, static_cast<int>(items_.size()), 0);
+  }
+
+ private:
+  TraceNode& at(std::uint32_t node) { return pairs_[node / 2].nodes[node % 2]; }
 
   void build(std::uint32_t node, int begin, int end, int depth) {
     Box box, centers;
@@ -92,8 +115,8 @@ class Builder {
       box.add(items_[i].box);
       centers.add(items_[i].center);
     }
-    TraceNode n{{box.low.x, box.low.y, box.low.z},
-                {box.high.x, box.high.y, box.high.z},
+    TraceNode n{{box.low[0], box.low[1], box.low[2]},
+                {box.high[0], box.high[1], box.high[2]},
                 static_cast<std::uint32_t>(begin),
                 static_cast<std::uint16_t>(end - begin),
                 0};
@@ -101,31 +124,30 @@ class Builder {
     if (end - begin > leaf_ && depth < kDeepest) middle = split(begin, end, centers, n.axis);
     if (middle == begin && end - begin > 0xffff) middle = (begin + end) / 2;
     if (middle > begin) {
-      n.first = static_cast<std::uint32_t>(nodes_.size());
+      n.first = static_cast<std::uint32_t>(2 * pairs_.size());
       n.count = 0;
     }
-    nodes_[node] = n;
+    at(node) = n;
     if (middle == begin) return;
-    nodes_.resize(nodes_.size() + 2);
+    pairs_.emplace_back();
     build(n.first, begin, middle, depth + 1);
     build(n.first + 1, middle, end, depth + 1);
   }
 
- private:
   /// @return where the second half begins; `begin` if all are in one place
   int split(int begin, int end, const Box& centers, std::uint16_t& axis) {
     const Split best = best_split(&items_[begin], end - begin, centers);
     if (best.axis < 0) return begin;
     axis = static_cast<std::uint16_t>(best.axis);
-    const auto middle = std::partition(
-        items_.begin() + begin, items_.begin() + end,
-        [&](const Item& item) { return along(item.center, best.axis) < best.place; });
+    const auto middle =
+        std::partition(items_.begin() + begin, items_.begin() + end,
+                       [&](const Item& item) { return item.center[best.axis] < best.place; });
     const int found = static_cast<int>(middle - items_.begin());
     return found == end ? begin : found;
   }
 
   std::vector<Item>& items_;
-  std::vector<TraceNode>& nodes_;
+  std::vector<Tree::Pair>& pairs_;
   int leaf_;
 };
 
@@ -136,18 +158,18 @@ Tree::Tree(const Mesh& mesh) {
   items.reserve(mesh.faces.size());
   for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
     Item item;
-    for (const std::uint32_t c : mesh.faces[f].corners) item.box.add(mesh.corners[c].position);
+    for (const std::uint32_t c : mesh.faces[f].corners)
+      item.box.add(four(mesh.corners[c].position));
     item.center = (item.box.low + item.box.high) * 0.5f;
     // Boxes of flat things must not be lost to rounding.
-    item.box.low = item.box.low - Vec{1e-5f, 1e-5f, 1e-5f};
-    item.box.high = item.box.high + Vec{1e-5f, 1e-5f, 1e-5f};
+    item.box.low -= 1e-5f;
+    item.box.high += 1e-5f;
     item.face = f;
     items.push_back(item);
   }
   if (items.empty()) return;
-  nodes.reserve(items.size());
-  nodes.resize(1);
-  Builder(items, nodes, kLargestLeaf).build(0, 0, static_cast<int>(items.size()), 0);
+  pairs.reserve(items.size() / 2 + 1);
+  Builder(items, pairs, kLargestLeaf).build();
   triangles.reserve(items.size());
   for (const Item& item : items) {
     const auto& c = mesh.faces[item.face].corners;
@@ -160,83 +182,31 @@ Tree::Tree(const Mesh& mesh) {
 Tree::Tree(const std::vector<std::array<Vec, 2>>& boxes) {
   std::vector<Item> items;
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
-    items.push_back({{boxes[i][0], boxes[i][1]}, (boxes[i][0] + boxes[i][1]) * 0.5f, i});
+    const Four low = four(boxes[i][0]), high = four(boxes[i][1]);
+    items.push_back({{low, high}, (low + high) * 0.5f, i});
   }
   if (items.empty()) return;
-  nodes.resize(1);
-  Builder(items, nodes, 1).build(0, 0, static_cast<int>(items.size()), 0);
+  Builder(items, pairs, 1).build();
   for (const Item& item : items) triangles.push_back({{}, {}, {}, item.face});
 }
 
-void clear(Rays& rays) {
-  for (int i = 0; i < kRays; ++i) {
-    rays.reach[i] = -1;
-    rays.face[i] = rays.part[i] = -1;
-    rays.u[i] = rays.v[i] = 0;
-    for (int a = 0; a < 3; ++a) {
-      rays.origin[a][i] = 0;
-      rays.direction[a][i] = rays.inverse[a][i] = 1;
-    }
-  }
+void enter(const trace_kernel::Axes& axes, const Rays& rays, Rays& local) {
+  PS_FITTING(trace_kernel::enter)(axes, rays, local);
 }
-
-void set_ray(Rays& rays, int i, Vec origin, Vec direction, float reach) {
-  const float o[3] = {origin.x, origin.y, origin.z};
-  const float d[3] = {direction.x, direction.y, direction.z};
-  for (int a = 0; a < 3; ++a) {
-    rays.origin[a][i] = o[a];
-    rays.direction[a][i] = d[a];
-    rays.inverse[a][i] = 1 / (std::abs(d[a]) > 1e-12f ? d[a] : 1e-12f);
-  }
-  rays.reach[i] = reach;
-  rays.face[i] = rays.part[i] = -1;
-}
-
-namespace {
-
-struct Kernels {
-  trace_kernel::Nearest* nearest;
-  trace_kernel::Blocked* blocked;
-  trace_kernel::Reached* reached;
-};
-
-Kernels choose() {
-#ifdef PS_X86_KERNELS
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512dq")) {
-    return {trace_kernel::nearest_avx512, trace_kernel::blocked_avx512,
-            trace_kernel::reached_avx512};
-  }
-  if (__builtin_cpu_supports("avx2")) {
-    return {trace_kernel::nearest_avx2, trace_kernel::blocked_avx2, trace_kernel::reached_avx2};
-  }
-#endif
-  return {trace_kernel::nearest_baseline, trace_kernel::blocked_baseline,
-          trace_kernel::reached_baseline};
-}
-
-const Kernels& kernels() {
-  static const Kernels chosen = choose();
-  return chosen;
-}
-
-}  // namespace
 
 void nearest(const Tree& tree, int part, Rays& rays) {
-  if (!tree.nodes.empty()) {
-    kernels().nearest(tree.nodes.data(), tree.triangles.data(), part, &rays);
-  }
+  if (tree.empty()) return;
+  PS_FITTING(trace_kernel::nearest)(tree.root(), tree.triangles.data(), part, &rays);
 }
 
 void blocked(const Tree& tree, Rays& rays) {
-  if (!tree.nodes.empty()) {
-    kernels().blocked(tree.nodes.data(), tree.triangles.data(), &rays);
-  }
+  if (tree.empty()) return;
+  PS_FITTING(trace_kernel::blocked)(tree.root(), tree.triangles.data(), &rays);
 }
 
 int reached(const Tree& tree, const Rays& rays, std::uint32_t* out) {
-  if (tree.nodes.empty()) return 0;
-  return kernels().reached(tree.nodes.data(), tree.triangles.data(), &rays, out);
+  if (tree.empty()) return 0;
+  return PS_FITTING(trace_kernel::reached)(tree.root(), tree.triangles.data(), &rays, out);
 }
 
 }  // namespace ps::rooms

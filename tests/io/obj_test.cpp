@@ -67,6 +67,12 @@ TEST(Obj, corners_are_shared_where_position_and_uv_are) {
   EXPECT_EQ(model.uvs[4], (std::array<float, 2>{1, 0}));
 }
 
+std::vector<std::array<std::size_t, 3>> triangles_of(const std::vector<Corner>& polygon) {
+  std::vector<std::array<std::size_t, 3>> triangles = {{7, 7, 7}};  // what was there goes
+  triangulate(polygon, triangles);
+  return triangles;
+}
+
 TEST(Obj, a_concave_polygon_is_covered_exactly_once) {
   // A star: fans from its inner corners would lie outside it.
   std::vector<Corner> star;
@@ -81,7 +87,7 @@ TEST(Obj, a_concave_polygon_is_covered_exactly_once) {
   }
   for (const bool reversed : {false, true}) {
     if (reversed) std::reverse(star.begin(), star.end());
-    const auto triangles = triangulate(star);
+    const auto triangles = triangles_of(star);
     ASSERT_EQ(triangles.size(), star.size() - 2);
     double sum = 0, sum_of_sizes = 0;
     for (const auto& [a, b, c] : triangles) {
@@ -95,9 +101,9 @@ TEST(Obj, a_concave_polygon_is_covered_exactly_once) {
 
 TEST(Obj, polygons_that_are_none_give_triangles_all_the_same) {
   for (const std::size_t corners : {3u, 4u, 100u, 256u, 257u, 5000u}) {
-    EXPECT_EQ(triangulate(std::vector<Corner>(corners, Corner{1, 2, 3})).size(), corners - 2);
+    EXPECT_EQ(triangles_of(std::vector<Corner>(corners, Corner{1, 2, 3})).size(), corners - 2);
   }
-  EXPECT_EQ(triangulate({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}).size(), 2u) << "a bow tie";
+  EXPECT_EQ(triangles_of({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}).size(), 2u) << "a bow tie";
 }
 
 TEST(Obj, materials_come_from_the_library_and_default_where_there_is_none) {

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "libps/core/error.h"
+#include "libps/core/parallel.h"
 #include "libps/rooms/shot.h"
 
 namespace ps::rooms {
@@ -106,6 +107,22 @@ TEST(Furniture, stands_in_rooms_that_are_given_it) {
     EXPECT_EQ(shoot(with, camera).color, shoot(Room(seed, options), camera).color);
   }
   EXPECT_GE(changed, 3);
+}
+
+TEST(Furniture, may_be_used_first_by_many_threads_at_once) {
+  const auto depth_in = [](const Furniture& furniture) {
+    RoomOptions options;
+    options.furniture = &furniture;
+    const Room room(2, options);
+    return shoot_depth(room, small_camera(room, 1));
+  };
+  const Furniture shared(crates());
+  std::vector<std::vector<float>> depths(6);
+  set_threads(3);
+  parallel_for(depths.size(), [&](std::size_t i) { depths[i] = depth_in(shared); });
+  set_threads(0);
+  const std::vector<float> alone = depth_in(Furniture(crates()));
+  for (const auto& depth : depths) EXPECT_EQ(depth, alone);
 }
 
 TEST(Furniture, may_be_forgotten_once_its_room_is_built) {

@@ -105,12 +105,12 @@ TEST(Tree, gives_the_same_bytes_on_every_instruction_set) {
   for (int round = 0; round < 50; ++round) {
     Rays chosen = random_rays(d, 1000), plain = chosen;
     nearest(tree, 1, chosen);
-    trace_kernel::nearest_baseline(tree.nodes.data(), tree.triangles.data(), 1, &plain);
+    trace_kernel::nearest_baseline(tree.root(), tree.triangles.data(), 1, &plain);
     EXPECT_EQ(std::memcmp(&chosen, &plain, sizeof(Rays)), 0);
     chosen = random_rays(d, 5);
     plain = chosen;
     blocked(tree, chosen);
-    trace_kernel::blocked_baseline(tree.nodes.data(), tree.triangles.data(), &plain);
+    trace_kernel::blocked_baseline(tree.root(), tree.triangles.data(), &plain);
     EXPECT_EQ(std::memcmp(&chosen, &plain, sizeof(Rays)), 0);
   }
 }
