@@ -12,9 +12,11 @@
 #include <new>
 #include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
+#include <sstream>
 #include <string>
 
 #include "apps/interrupt.h"
+#include "apps/report.h"
 #include "io/hush.h"
 #include "libps/core/parallel.h"
 #include "libps/core/words.h"
@@ -45,6 +47,21 @@ void hush_libraries() {
   hush_decoders();
 }
 
+/// --help, --version
+int answer(const CLI::App& program, const CLI::Success& asked) {
+  std::ostringstream text;
+  const int status = program.exit(asked, text, text);
+  print_text(text.str());
+  return status;
+}
+
+/// CLI11 says "--radius: At Most 1 required but received 2".
+std::string in_our_words(const CLI::ParseError& error) {
+  const std::string text = one_line(error.what());
+  const std::size_t at = text.find(": At Most 1 required but received ");
+  return at == std::string::npos ? text : text.substr(0, at) + " can be given once";
+}
+
 int report_usage(const CLI::App& program, const CLI::ParseError& error) {
   std::string verb;  // with the one inside it, as "eval views"
   for (const CLI::App* at = &program; !at->get_subcommands().empty();) {
@@ -52,7 +69,7 @@ int report_usage(const CLI::App& program, const CLI::ParseError& error) {
     verb += " " + at->get_name();
   }
   std::fprintf(stderr, "pixelsynth%s: %s; see pixelsynth%s --help\n", verb.c_str(),
-               one_line(error.what()).c_str(), verb.c_str());
+               in_our_words(error).c_str(), verb.c_str());
   return 2;
 }
 
@@ -87,12 +104,12 @@ int run(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
-    return program.exit(asked);
+    return answer(program, asked);
   } catch (const CLI::ParseError& error) {
     return report_usage(program, error);
   }
   context.flush();
-  if (program.get_subcommands().empty()) std::printf("%s", program.help().c_str());
+  if (program.get_subcommands().empty()) print_text(program.help());
   return 0;
 }
 
