@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/program.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -38,6 +39,15 @@ void add_common_options(CLI::App& program, Context& context) {
   program.add_flag("--json", context.json, "Print the report as JSON on stdout");
   program.set_version_flag("--version", "pixelsynth " PS_VERSION);
   program.fallthrough();  // so that these are also taken after the verb
+}
+
+/// A standard stream that the caller closed must not become the number of a file that we write:
+/// what is printed there fails instead. open() takes the lowest number that is free.
+void hold_standard_streams() {
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+    if (fcntl(stream, F_GETFD) >= 0) continue;
+    open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
 }
 
 /// Libraries below us must not write to the terminal: one failure is one line.
@@ -81,6 +91,7 @@ int fail(const char* message) noexcept {
 }  // namespace
 
 int run(int argc, char** argv) {
+  hold_standard_streams();
   hush_libraries();
   Context context;
   CLI::App program(
