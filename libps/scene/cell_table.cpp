@@ -8,7 +8,7 @@ namespace {
 
 using Key = KeyTable::Key;
 
-std::size_t hash_of(const Key& key) {
+std::uint64_t hash_of(const Key& key) {
   std::uint64_t h = 0;
   for (const std::int32_t k : key) {
     h = (h ^ static_cast<std::uint32_t>(k)) * 0x9e3779b97f4a7c15;
@@ -16,6 +16,8 @@ std::size_t hash_of(const Key& key) {
   }
   return h;
 }
+
+std::uint32_t high_half(std::uint64_t hash) { return static_cast<std::uint32_t>(hash >> 32); }
 
 /// What == of arrays would call memcmp() for.
 bool same(const Key& a, const Key& b) {
@@ -31,31 +33,35 @@ std::size_t place_of(std::int32_t x, std::int32_t y, std::int32_t z) {
 
 }  // namespace
 
-std::size_t KeyTable::slot_of(const Key& key) const {
+std::size_t KeyTable::slot_of(const Key& key, std::uint64_t hash) const {
   const std::size_t mask = slots_.size() - 1;
-  std::size_t slot = hash_of(key) & mask;
-  while (slots_[slot] != kNone && !same(keys_[slots_[slot]], key)) slot = (slot + 1) & mask;
-  return slot;
+  std::size_t at = hash & mask;
+  for (; slots_[at].number != kNone; at = (at + 1) & mask) {
+    if (slots_[at].hash == high_half(hash) && same(keys_[slots_[at].number], key)) break;
+  }
+  return at;
 }
 
 std::uint32_t KeyTable::find(const Key& key) const {
-  return slots_.empty() ? kNone : slots_[slot_of(key)];
+  return slots_.empty() ? kNone : slots_[slot_of(key, hash_of(key))].number;
 }
 
 std::uint32_t KeyTable::find_or_add(const Key& key) {
   if (last_ != kNone && same(keys_[last_], key)) return last_;
   if (2 * keys_.size() >= slots_.size()) {
-    slots_.assign(std::max<std::size_t>(64, 2 * slots_.size()), kNone);  // stays a power of two
+    slots_.assign(std::max<std::size_t>(64, 2 * slots_.size()), {});  // stays a power of two
     for (std::size_t i = 0; i < keys_.size(); ++i) {
-      slots_[slot_of(keys_[i])] = static_cast<std::uint32_t>(i);
+      const std::uint64_t hash = hash_of(keys_[i]);
+      slots_[slot_of(keys_[i], hash)] = {static_cast<std::uint32_t>(i), high_half(hash)};
     }
   }
-  std::uint32_t& slot = slots_[slot_of(key)];
-  if (slot == kNone) {
-    slot = static_cast<std::uint32_t>(keys_.size());
+  const std::uint64_t hash = hash_of(key);
+  Slot& slot = slots_[slot_of(key, hash)];
+  if (slot.number == kNone) {
+    slot = {static_cast<std::uint32_t>(keys_.size()), high_half(hash)};
     keys_.push_back(key);
   }
-  return last_ = slot;
+  return last_ = slot.number;
 }
 
 std::uint32_t CellTable::find_or_add(const Key& key) {

@@ -19,11 +19,16 @@ class KeyTable {
   const std::vector<Key>& keys() const { return keys_; }
 
  private:
-  std::size_t slot_of(const Key& key) const;
+  /// Half of the hash stands beside the number: keys that differ are seldom fetched to tell so.
+  struct Slot {
+    std::uint32_t number = kNone;  ///< kNone = free
+    std::uint32_t hash = 0;
+  };
+  std::size_t slot_of(const Key& key, std::uint64_t hash) const;
 
   std::vector<Key> keys_;
-  std::vector<std::uint32_t> slots_;  ///< a power of two of them; kNone = free
-  std::uint32_t last_ = kNone;        ///< that was asked for or added: the next is often the same
+  std::vector<Slot> slots_;     ///< a power of two of them
+  std::uint32_t last_ = kNone;  ///< that was asked for or added: the next is often the same
 };
 
 /// @brief Numbers for the cells of grids, in the order in which they first come; a key is x, y, z

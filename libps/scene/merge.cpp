@@ -98,6 +98,7 @@ std::vector<Sample> merged(const std::vector<Sample>& samples, const SampleGrid&
                            const std::vector<float>& reach, Meter* meter) {
   if (samples.empty()) return {};
   const std::vector<std::uint32_t> speaker = Speakers(samples, grid, reach, meter).find();
+  if (meter) meter->add(0);
   std::vector<std::uint32_t> place(samples.size());
   std::vector<Sample> result;
   for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -40,7 +40,7 @@ SampleGrid::SampleGrid(const std::vector<Sample>& samples, float pixels, Meter* 
     guests.emplace_back(table_.find_or_add(key_of(s, other)), static_cast<std::uint32_t>(i));
   }
   fill_cells(cell_of, guests);
-  fill_blocks();
+  fill_blocks(meter);
 }
 
 CellTable::Key SampleGrid::key_of(const Sample& sample, int level) const {
@@ -73,10 +73,11 @@ void SampleGrid::fill_cells(const std::vector<std::uint32_t>& cell_of,
   for (const auto& [cell, sample] : guests) members_[next[cell]++] = sample;
 }
 
-void SampleGrid::fill_blocks() {
+void SampleGrid::fill_blocks(Meter* meter) {
   KeyTable blocks;
   std::vector<std::uint32_t> block_of(cells());
   for (std::size_t c = 0; c < cells(); ++c) {
+    if (meter && c % kSteps == 0) meter->add(0);
     CellTable::Key key = table_.keys()[c];
     for (std::size_t axis = 0; axis < 3; ++axis) key[axis] >>= kBlockBits;
     block_of[c] = blocks.find_or_add(key);

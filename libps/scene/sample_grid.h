@@ -49,7 +49,7 @@ class SampleGrid {
   CellTable::Key key_of(const Sample& sample, int level) const;
   void fill_cells(const std::vector<std::uint32_t>& cell_of,
                   const std::vector<std::pair<std::uint32_t, std::uint32_t>>& guests);
-  void fill_blocks();
+  void fill_blocks(Meter* meter);
 
   float pixels_;
   CellTable table_;
