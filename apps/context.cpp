@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cstdio>
 
@@ -11,6 +12,12 @@ namespace ps::apps {
 void Context::say(const std::string& line) const {
   if (!quiet) waiting_.push_back(line);
   if (verbose) flush();
+}
+
+void Context::say_once(const std::string& line) const {
+  if (std::find(said_once_.begin(), said_once_.end(), line) != said_once_.end()) return;
+  said_once_.push_back(line);
+  say(line);
 }
 
 void Context::detail(const std::string& line) const {

@@ -18,13 +18,14 @@ struct Context {
   /// A line for the user, unless quiet. It waits for flush(), so that of a run that fails early
   /// only the reason is seen.
   void say(const std::string& line) const;
-  void detail(const std::string& line) const;  ///< only when verbose
-  void warn(const std::string& line) const;    ///< "warning: ...", unless quiet
-  void flush() const;                          ///< prints what waits
+  void say_once(const std::string& line) const;  ///< the same, unless it said this line before
+  void detail(const std::string& line) const;    ///< only when verbose
+  void warn(const std::string& line) const;      ///< "warning: ...", unless quiet
+  void flush() const;                            ///< prints what waits
   bool waits() const { return !waiting_.empty(); }
 
  private:
-  mutable std::vector<std::string> waiting_;
+  mutable std::vector<std::string> waiting_, said_once_;
 };
 
 /// @return the text on one line: runs of line breaks and blanks become one blank

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "apps/scene_report.h"
+#include "libps/core/words.h"
 
 namespace ps::apps {
 namespace {
@@ -49,21 +50,21 @@ Json report_of(const Fused& fused, const FrameList& frames) {
 }
 
 void warn_of(const Fused& fused, const Context& context) {
-  const auto warn = [&](std::size_t count, const std::string& what) {
-    if (count > 0) context.warn(std::to_string(count) + what);
+  const auto warn = [&](std::size_t count, const std::string& one, const std::string& many) {
+    if (count > 0) context.warn(counted(count, one, many));
   };
   if (fused.study && fused.study->gave_up) {
     context.warn(
         "the study gave up: half of the frames or more would have to be left out, and nobody can "
         "tell which are right; none is left out and nothing is evened out");
   }
-  warn(fused.refused(),
-       " frames are left out, as the others contradict them: their poses must be wrong");
-  warn(fused.report.empty - fused.refused(),
-       fused.study ? " frames have no depth, or none that its neighbours share, and are left out"
-                   : " frames have no depth at all and are left out");
-  warn(fused.scaled,
-       " depth images are of another size than their photos; scaled to the photos' size");
+  warn(fused.refused(), "frame is left out, as the others contradict it: its pose must be wrong",
+       "frames are left out, as the others contradict them: their poses must be wrong");
+  const std::string which = fused.study ? ", or none that its neighbours share," : " at all";
+  warn(fused.report.empty - fused.refused(), "frame has no depth" + which + " and is left out",
+       "frames have no depth" + which + " and are left out");
+  warn(fused.scaled, "depth image is of another size than its photo; scaled to the photo's size",
+       "depth images are of another size than their photos; scaled to the photos' size");
 }
 
 }  // namespace ps::apps

@@ -39,9 +39,11 @@ PhotoLens choose_lens(const LensArguments& arguments, const Photo& photo, const 
     context.detail("lens: the photo's EXIF focal length");
     return {lens, "EXIF"};
   }
-  context.say(
-      "lens: 60 degrees along the long side, as the photo does not say; --intrinsics or --fov "
-      "does");
+  const std::string why = photo.focal_doubt.empty()
+                              ? "the photo does not say"
+                              : "the photo's EXIF tells of " + photo.focal_doubt;
+  context.say_once("lens: 60 degrees along the long side, as " + why +
+                   "; --intrinsics or --fov does");
   return {lens, "default"};
 }
 

@@ -105,11 +105,19 @@ OutputFolder::OutputFolder(const fs::path& target) : given_(target) {
   const auto given = [this](const fs::path&) { return given_.string(); };
   on_files(
       [this] {
+        if (fs::is_symlink(given_) && !fs::exists(given_)) {
+          throw Error(given_.string(),
+                      "is a link to " + fs::read_symlink(given_).string() + ", which is not there",
+                      "a folder, or a path where nothing is yet");
+        }
         if (fs::exists(given_) && !fs::is_directory(given_)) {
           throw Error(given_.string(), "is a file", "a folder, or a path where nothing is yet");
         }
         const fs::path whole = fs::absolute(given_).lexically_normal();
         target_ = whole.has_filename() ? whole : whole.parent_path();
+        if (!target_.has_filename()) {
+          throw Error(given_.string(), "is the root of all folders", "a folder in it");
+        }
       },
       given);
   check_parent(target_, given_);
@@ -144,6 +152,17 @@ void OutputFolder::write(const std::string& name,
 
 void OutputFolder::clears(const std::vector<std::string>& names) {
   stale_.insert(stale_.end(), names.begin(), names.end());
+}
+
+void OutputFolder::check_places(const std::vector<std::string>& names) const {
+  std::error_code ignored;
+  for (const std::string& name : names) {
+    const fs::path file = given_ / name, folder = file.parent_path();
+    if (fs::is_directory(file, ignored)) throw Error(file.string(), "is a folder", "a file");
+    if (fs::exists(folder, ignored) && !fs::is_directory(folder, ignored)) {
+      throw Error(folder.string(), "is a file", "a folder");
+    }
+  }
 }
 
 void OutputFolder::clear_stale() const {

@@ -22,8 +22,8 @@ namespace ps::apps {
 /// or a folder a file.
 class OutputFolder {
  public:
-  /// Throws ps::Error when the target is a file, or when its parent is missing or cannot be
-  /// written; CLI::ValidationError when its name is empty.
+  /// Throws ps::Error when the target is a file, a link to nothing or the root folder, or when its
+  /// parent is missing or cannot be written; CLI::ValidationError when its name is empty.
   explicit OutputFolder(const std::filesystem::path& target);
 
   /// Makes the folder of a file of this relative name, and has `task` write it where it is told to.
@@ -34,6 +34,9 @@ class OutputFolder {
   /// this run did not write, as they are of an earlier run that was asked for other things.
   /// @param names  relative; "telea/pair_#.png" is that series of numbered files
   void clears(const std::vector<std::string>& names);
+  /// @brief Fails before the work: throws ps::Error where a file of one of these relative names
+  /// would meet a folder, or one of its folders a file.
+  void check_places(const std::vector<std::string>& names) const;
   void commit();  ///< throws ps::Error
 
  private:
@@ -43,7 +46,7 @@ class OutputFolder {
   std::filesystem::path given_;           ///< the target as the user wrote it, for messages
   std::filesystem::path target_;          ///< the same, absolute
   std::optional<PartialFolder> partial_;  ///< always there; removes what was not committed
-  std::vector<std::string> stale_;  ///< names that clears() was given
+  std::vector<std::string> stale_;        ///< names that clears() was given
 };
 
 /// @brief Fails before the work, not after it: throws CLI::ValidationError unless `path` has one of

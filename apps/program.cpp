@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/program.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,9 +13,11 @@
 #include <new>
 #include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
+#include <sstream>
 #include <string>
 
 #include "apps/interrupt.h"
+#include "apps/report.h"
 #include "io/hush.h"
 #include "libps/core/parallel.h"
 #include "libps/core/words.h"
@@ -38,11 +41,35 @@ void add_common_options(CLI::App& program, Context& context) {
   program.fallthrough();  // so that these are also taken after the verb
 }
 
+/// A standard stream that the caller closed must not become the number of a file that we write:
+/// what is printed there fails instead. open() takes the lowest number that is free.
+void hold_standard_streams() {
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+    if (fcntl(stream, F_GETFD) >= 0) continue;
+    open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
 /// Libraries below us must not write to the terminal: one failure is one line.
 void hush_libraries() {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   cv::redirectError([](int, const char*, const char*, const char*, int, void*) { return 0; });
   hush_decoders();
+}
+
+/// --help, --version
+int answer(const CLI::App& program, const CLI::Success& asked) {
+  std::ostringstream text;
+  const int status = program.exit(asked, text, text);
+  print_text(text.str());
+  return status;
+}
+
+/// CLI11 says "--radius: At Most 1 required but received 2".
+std::string in_our_words(const CLI::ParseError& error) {
+  const std::string text = one_line(error.what());
+  const std::size_t at = text.find(": At Most 1 required but received ");
+  return at == std::string::npos ? text : text.substr(0, at) + " can be given once";
 }
 
 int report_usage(const CLI::App& program, const CLI::ParseError& error) {
@@ -52,7 +79,7 @@ int report_usage(const CLI::App& program, const CLI::ParseError& error) {
     verb += " " + at->get_name();
   }
   std::fprintf(stderr, "pixelsynth%s: %s; see pixelsynth%s --help\n", verb.c_str(),
-               one_line(error.what()).c_str(), verb.c_str());
+               in_our_words(error).c_str(), verb.c_str());
   return 2;
 }
 
@@ -64,6 +91,7 @@ int fail(const char* message) noexcept {
 }  // namespace
 
 int run(int argc, char** argv) {
+  hold_standard_streams();
   hush_libraries();
   Context context;
   CLI::App program(
@@ -87,12 +115,12 @@ int run(int argc, char** argv) {
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
-    return program.exit(asked);
+    return answer(program, asked);
   } catch (const CLI::ParseError& error) {
     return report_usage(program, error);
   }
   context.flush();
-  if (program.get_subcommands().empty()) std::printf("%s", program.help().c_str());
+  if (program.get_subcommands().empty()) print_text(program.help());
   return 0;
 }
 

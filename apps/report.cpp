@@ -4,9 +4,11 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "io/atomic_file.h"
@@ -47,6 +49,14 @@ double peak_memory_mib() {
   rusage usage = {};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+/// @param where  for the message
+void print(const std::string& text, const std::string& where) {
+  const bool printed = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (printed && std::fflush(stdout) == 0) return;
+  throw Error(where, "cannot be written: " + std::generic_category().message(errno),
+              "a terminal or a file that takes it");
 }
 
 }  // namespace
@@ -101,19 +111,11 @@ void write_json(const std::filesystem::path& path, const Json& json) {
 
 void print_report(const Context& context, const Json& report) {
   if (!context.json) return;
-  const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace);
-  std::printf("%s\n", text.c_str());
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    throw Error("--json", "the report cannot be written to stdout");
-  }
+  const std::string text = report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  print(text, "--json, to stdout");
 }
 
-void print_text(const std::string& text) {
-  std::fwrite(text.data(), 1, text.size(), stdout);
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    throw Error("stdout", "the table cannot be written");
-  }
-}
+void print_text(const std::string& text) { print(text, "stdout"); }
 
 double Stopwatch::seconds() const { return std::round(seconds_since(start_) * 1000) / 1000; }
 

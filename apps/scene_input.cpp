@@ -15,6 +15,7 @@
 #include "io/rgbd_folder.h"
 #include "io/trajectory.h"
 #include "libps/core/error.h"
+#include "libps/core/words.h"
 #include "libps/geometry/relative_pose.h"
 #include "libps/scene/photo_depth.h"
 #include "libps/scene/second_view.h"
@@ -121,8 +122,8 @@ std::shared_ptr<const Frames> open_frames(const SceneInputArguments& a, const Co
   frames->folders = {open_rgbd_folder(a.photo, &skipped)};
   frames->depth_scale = a.depth_scale;
   if (skipped > 0) {
-    context.warn(a.photo + ": " + std::to_string(skipped) +
-                 " frames lack colour, depth or pose and are left out");
+    context.warn(a.photo + ": " + counted(skipped, "frame lacks", "frames lack") +
+                 " colour, depth or pose and " + (skipped == 1 ? "is" : "are") + " left out");
   }
   frames->chosen = choose_frames(frames->folders, a.choice()).used;
   if (frames->chosen.empty())

@@ -10,6 +10,7 @@
 #include "apps/scene_report.h"
 #include "io/trajectory.h"
 #include "libps/core/error.h"
+#include "libps/core/words.h"
 #include "libps/scene/camera_path.h"
 
 namespace ps::apps {
@@ -84,7 +85,8 @@ AddReport SceneMaker::observe_all(SceneCloud& plain) {
   up_ = up_axis(poses);
   report_["depth"]["frames"] = observed_;
   if (without_depth > 0) {
-    context_.warn(std::to_string(without_depth) + " frames have no depth at all and are left out");
+    context_.warn(counted(without_depth, "frame has", "frames have") + " no depth at all and " +
+                  (without_depth == 1 ? "is" : "are") + " left out");
   }
   return sum;
 }
@@ -166,18 +168,31 @@ void SceneMaker::make() {
 }
 
 void SceneMaker::keep_to_budget(const std::vector<PlannedView>& views) {
-  const std::optional<BudgetOptions> options = a_.point_budget();
+  std::optional<BudgetOptions> options = a_.point_budget();
   if (!options) return;
   const Stopwatch watch;
   BudgetReport done;
   const std::size_t before = cloud_.size();
-  cloud_ = thinned(cloud_, views, *options, &done);
+  {
+    Progress bar(context_, "budget", kSteps);
+    options->progress = [&](double share) {
+      bar.update(static_cast<std::size_t>(std::lround(share * kSteps)));
+    };
+    cloud_ = thinned(cloud_, views, *options, &done);
+  }
   Json& report = report_["budget"] = {
       {"views", views.size()}, {"points_before", before},        {"points", done.points},
       {"merged", done.merged}, {"seen_by_no_view", done.unseen}, {"tolerance", done.tolerance},
       {"pixels", done.pixels}};
   const bool targeted = options->points > 0 || options->psnr > 0;
   if (targeted) report["psnr"] = std::isfinite(done.psnr) ? Json(done.psnr) : Json("inf");
+  if (options->points > 0 && done.points > options->points) {
+    report["points_asked"] = options->points;
+    context_.warn("--budget points=" + std::to_string(options->points) + ": " +
+                  counted(done.points, "point stays", "points stay") +
+                  ", as observed and outpainted ones are not merged, nor what lies far apart or is "
+                  "seen by no view");
+  }
   report_["seconds"]["budget"] = watch.seconds();
   throw_if_interrupted();
 }

@@ -1,7 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/scene_report.h"
 
+#include <fstream>
+
 namespace ps::apps {
+namespace {
+
+/// Appends `before` + the text under `key` of each entry + `after`; a text that is no plain name is
+/// none of ours.
+void append_names(const Json& entries, const char* key, const std::string& before,
+                  const std::string& after, std::vector<std::string>* names) {
+  if (!entries.is_array()) return;
+  for (const Json& entry : entries) {
+    if (!entry.is_object() || !entry.contains(key) || !entry[key].is_string()) continue;
+    const auto name = entry[key].get<std::string>();
+    if (name.find('/') == std::string::npos) names->push_back(before + name + after);
+  }
+}
+
+}  // namespace
 
 Json to_json(const AddReport& r) {
   return {{"lifted", r.lifted},
@@ -35,6 +52,16 @@ Json to_json(const std::string& name, const SupportReport& r, int samples) {
                      {"refine", o.refine_seconds}, {"score", o.score_seconds},
                      {"depth", r.depth_seconds},   {"align", r.align_seconds}};
   return json;
+}
+
+std::vector<std::string> pictures_of_earlier_scene(const std::filesystem::path& folder) {
+  std::ifstream file(folder / "report.json");
+  const Json report = Json::parse(file, nullptr, false);
+  std::vector<std::string> names;
+  if (!report.is_object()) return names;
+  if (report.contains("views")) append_names(report["views"], "view", "views/", ".png", &names);
+  if (report.contains("videos")) append_names(report["videos"], "video", "", "", &names);
+  return names;
 }
 
 }  // namespace ps::apps

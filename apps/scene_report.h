@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "apps/report.h"
 #include "libps/scene/scene_builder.h"
@@ -14,5 +16,10 @@ Json to_json(const std::string& name, const SupportReport& report, int samples);
 
 /// @brief What one view did to the cloud.
 Json to_json(const AddReport& report);
+
+/// @brief What an earlier scene wrote into a folder, by its report.json there, that a scene of
+/// other views or videos would not replace.
+/// @return relative names; none where there is no report of a scene
+std::vector<std::string> pictures_of_earlier_scene(const std::filesystem::path& folder);
 
 }  // namespace ps::apps

@@ -208,17 +208,21 @@ void check_score_files(const std::string& output,
 }
 
 void write_score_files(const std::string& output, const Json& report, const ScoreSummary& summary,
-                       const ScoreTable* table) {
+                       const ScoreTable* table, OutputFolder* pictures) {
   AtomicFiles files;
   write_text(summary_file(output), to_csv(summary));
   if (table != nullptr) write_text(samples_file(output), to_csv(*table));
   write_json(output, report);
-  files.commit();
+  files.commit(pictures == nullptr ? std::function<void()>() : [=] { pictures->commit(); });
 }
 
 void end_scores(const Context& context, ScoreRun run, const Stopwatch& total) {
   add_costs(run.report, total);
-  if (!run.output.empty()) write_score_files(run.output, run.report, run.summary, run.table);
+  if (!run.output.empty()) {
+    write_score_files(run.output, run.report, run.summary, run.table, run.pictures);
+  } else if (run.pictures != nullptr) {
+    run.pictures->commit();
+  }
   if (!context.json) print_text(text_of(run.summary, run.most_columns));
   end_run(context, run.report, run.output.empty() ? run.input : run.output, run.what);
 }

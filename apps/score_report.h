@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/context.h"
+#include "apps/output.h"
 #include "apps/report.h"
 #include "libps/eval/score_table.h"
 
@@ -77,9 +78,10 @@ void check_score_files(const std::string& output,
                        const std::vector<std::filesystem::path>& inputs = {});
 
 /// @brief Writes the report as FILE.json, the summary as FILE.csv and, where there is one, the
-/// whole table as FILE.samples.csv, each whole or not at all. Throws ps::Error.
+/// whole table as FILE.samples.csv, all or none of them. Throws ps::Error.
+/// @param pictures  committed with them, if given: when that fails none of the files is there
 void write_score_files(const std::string& output, const Json& report, const ScoreSummary& summary,
-                       const ScoreTable* table = nullptr);
+                       const ScoreTable* table = nullptr, OutputFolder* pictures = nullptr);
 
 /// A run that scored.
 struct ScoreRun {
@@ -90,6 +92,7 @@ struct ScoreRun {
   const ScoreTable* table = nullptr;  ///< may be null
   std::string what;                   ///< "depth of 7 frames scored"
   std::size_t most_columns = 5;       ///< side by side
+  OutputFolder* pictures = nullptr;   ///< to be committed with the files; may be null
 };
 
 /// @brief The end of such a run: adds costs to the report, writes the files, prints the table, or

@@ -134,6 +134,10 @@ void run_eval_ab(const EvalAbArguments& args, const Context& context) {
     throw CLI::ValidationError("--names", "expected two names, as ours,theirs");
   }
   check_output_file(args.output, {".html", ".htm"});
+  std::error_code ignored;
+  if (fs::equivalent(args.a, args.b, ignored)) {
+    throw Error(args.b, "is " + args.a + ", A's folder", "pictures of another method");
+  }
   note_interrupts();
   const Stopwatch total;
   const AbPage page = make_page(args, context);

@@ -40,20 +40,31 @@ ScoreSummary summary_of(const std::string& cloud, const CloudIntervals& found) {
   return summary;
 }
 
-Cloud read_points(const std::string& path) {
-  Cloud cloud = read_cloud(path);
-  if (cloud.empty()) throw Error(path, "holds no point", "a cloud with points");
+/// Says how many points are not finite and left out.
+Cloud read_points(const std::string& path, const Context& context, std::size_t* not_finite) {
+  Cloud cloud = read_cloud(path, not_finite);
+  const std::string dropped = counted(*not_finite, "point is", "points are") + " not finite";
+  if (cloud.empty()) {
+    throw Error(path, *not_finite > 0 ? "holds no point; " + dropped : "holds no point",
+                "a cloud with points");
+  }
+  if (*not_finite > 0) context.warn(path + ": " + dropped + " and not scored");
   return cloud;
 }
 
 void run_eval_cloud(const EvalCloudArguments& a, const CLI::App& verb, const Context& context) {
   check_score_files(a.output, {a.cloud, a.truth});
   const Stopwatch total;
-  const Cloud cloud = read_points(a.cloud), truth = read_points(a.truth);
+  std::size_t not_finite = 0, true_not_finite = 0;
+  const Cloud cloud = read_points(a.cloud, context, &not_finite);
+  const Cloud truth = read_points(a.truth, context, &true_not_finite);
   const CloudIntervals found =
       cloud_intervals(cloud, truth, a.thresholds, a.block, bootstrap_of(context));
   const ScoreSummary summary = summary_of(fs::path(a.cloud).filename().string(), found);
-  const Json measured = {{"points", cloud.size()}, {"true_points", truth.size()}};
+  const Json measured = {{"points", cloud.size()},
+                         {"true_points", truth.size()},
+                         {"not_finite", not_finite},
+                         {"true_not_finite", true_not_finite}};
   end_scores(
       context,
       {a.output, a.cloud, score_report(verb, context, measured, "clouds", summary), summary,

@@ -205,11 +205,11 @@ void run_eval_views(const EvalViewsArguments& a, const CLI::App& verb, const Con
   const ScoreSummary summary = run.summary(context);
   run.warn_of_unknown_parts(context);
   const Json measured = {{"frames", frames_report(a.frames, frames)}, {"pairs", run.pairs()}};
-  if (folder) folder->commit();
-  end_scores(context,
-             {a.output, a.frames.data, score_report(verb, context, measured, "methods", summary),
-              summary, &run.table(), "views of " + counted(pairs.size(), "pair") + " scored"},
-             total);
+  ScoreRun scored = {
+      a.output, a.frames.data, score_report(verb, context, measured, "methods", summary),
+      summary,  &run.table(),  "views of " + counted(pairs.size(), "pair") + " scored"};
+  scored.pictures = folder ? &*folder : nullptr;
+  end_scores(context, std::move(scored), total);
 }
 
 void add_pair_options(CLI::App& verb, EvalViewsArguments& a) {

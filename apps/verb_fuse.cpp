@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -19,6 +20,7 @@
 #include "io/intrinsics_file.h"
 #include "io/trajectory.h"
 #include "libps/core/error.h"
+#include "libps/core/words.h"
 #include "libps/scene/camera_path.h"
 #include "libps/scene/frame_study.h"
 #include "libps/scene/fuse.h"
@@ -95,10 +97,10 @@ std::vector<RgbdFolder> open_folders(const FuseArguments& a, const Context& cont
   for (const std::string& path : a.folders) {
     std::size_t skipped = 0;
     folders.push_back(open_rgbd_folder(path, &skipped));
-    context.detail(path + ": " + std::to_string(folders.back().frames.size()) + " frames");
+    context.detail(path + ": " + counted(folders.back().frames.size(), "frame"));
     if (skipped > 0) {
-      context.warn(path + ": " + std::to_string(skipped) +
-                   " frames lack colour, depth or pose and are left out");
+      context.warn(path + ": " + counted(skipped, "frame lacks", "frames lack") +
+                   " colour, depth or pose and " + (skipped == 1 ? "is" : "are") + " left out");
     }
   }
   return folders;
@@ -126,8 +128,25 @@ std::vector<Pose> world_from_cams(const FrameList& frames) {
 constexpr const char* kBeside[] = {"settings.json", "report.json", "trajectory.txt",
                                    "intrinsics.json", "held-out.txt"};
 
+/// a.ply and a.pcd would share their report.
+void check_no_other_cloud(const std::filesystem::path& output) {
+  std::filesystem::path other = output;
+  other.replace_extension(extension_of(output) == ".ply" ? ".pcd" : ".ply");
+  std::ifstream file(beside(output, "settings.json"));
+  const Json settings = Json::parse(file, nullptr, false);
+  const Json::json_pointer made("/options/output");
+  std::error_code ignored;
+  if (!settings.is_object() || !settings.contains(made) || !settings.at(made).is_string()) return;
+  const std::filesystem::path cloud = settings.at(made).get<std::string>();
+  if (cloud.filename() != other.filename() || !std::filesystem::exists(other, ignored)) return;
+  throw Error(beside(output, "report.json").string(),
+              "is the report of " + other.string() + " and would be replaced",
+              "another name than " + output.string());
+}
+
 void check_outputs(const std::string& output) {
   check_output_file(output, {".ply", ".pcd"});
+  check_no_other_cloud(output);
   for (const char* name : kBeside) check_output_file(beside(output, name), {});
 }
 
@@ -238,8 +257,7 @@ void run_fuse(const FuseArguments& given, const CLI::App& verb, const Context& c
   add_costs(report, total);
   write_all(a, fused.cloud, frames, settings_of(verb, context), report);
   end_run(context, report, a.output,
-          std::to_string(fused.cloud.size()) + " points from " +
-              std::to_string(fused.report.views) + " views");
+          counted(fused.cloud.size(), "point") + " from " + counted(fused.report.views, "view"));
 }
 
 }  // namespace

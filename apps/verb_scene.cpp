@@ -12,6 +12,7 @@
 #include "apps/program.h"
 #include "apps/progress.h"
 #include "apps/scene_maker.h"
+#include "apps/scene_report.h"
 #include "io/cloud_file.h"
 #include "io/intrinsics_file.h"
 #include "io/photo.h"
@@ -170,10 +171,24 @@ void write_scene(OutputFolder& folder, const SceneMaker& scene,
   folder.write("preview.png", [&](const Path& file) { write_image(file, preview_of(pictures)); });
 }
 
+/// Makes sure, before the work, that the folder can take what will be written, and that nothing of
+/// an earlier scene stays beside it.
+void prepare(OutputFolder& folder, const SceneArguments& a) {
+  std::vector<std::string> names = {"scene.ply",   "trajectory.txt", "intrinsics.json",
+                                    "preview.png", "settings.json",  "report.json"};
+  for (const ViewPlan& view : plan_scene(Pose::Identity(), a.plan())) {
+    names.push_back("views/" + view.name + ".png");
+  }
+  for (const std::string& path : a.paths) names.push_back(video_name(path));
+  folder.check_places(names);
+  folder.clears(pictures_of_earlier_scene(a.output));
+}
+
 void make_scene(const SceneArguments& a, const Json& settings, SceneMaker& scene,
                 const Context& context) {
   const Stopwatch total;
   OutputFolder folder(a.output);
+  prepare(folder, a);
   scene.make();
   constexpr int kNetworks = 256;  // pixels of a short side that networks see
   const Intrinsics lens =
@@ -229,9 +244,10 @@ void add_scene(CLI::App& program, const Context& context) {
       "intrinsics.json, report.json and settings.json in one folder.\n"
       "What the photo does not show is outpainted at the extremes of the camera's range and joins "
       "the cloud; views in between are splats of that one cloud. The folder appears when all is "
-      "done; in a folder that exists already, files of these names are replaced and others stay. "
-      "The world has the photo's camera at its origin; x is right, y up, z towards the viewer, as "
-      "MeshLab, CloudCompare and f3d show it; a folder of frames keeps its own world.");
+      "done; in a folder that exists already, files of these names are replaced, views and videos "
+      "of an earlier scene go, and others stay. The world has the photo's camera at its origin; x "
+      "is right, y up, z towards the viewer, as MeshLab, CloudCompare and f3d show it; a folder of "
+      "frames keeps its own world.");
   auto a = std::make_shared<SceneArguments>();
   a->add_to(*verb);
   verb->callback([a, verb, &context] { run_scene(*a, *verb, context); });

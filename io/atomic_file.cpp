@@ -2,12 +2,16 @@
 #include "io/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <mutex>
 #include <random>
+#include <set>
 #include <system_error>
 
+#include "io/leftover.h"
 #include "libps/core/error.h"
 
 namespace ps {
@@ -36,10 +40,24 @@ fs::path checked_place(const fs::path& path) {
   throw Error(path.string(), doing + std::generic_category().message(code));
 }
 
-/// The number comes first, as a long name must keep its extension.
+constexpr char kBegin[] = ".ps-";
+
+/// The numbers, of this process and by chance, come first, as a long name must keep its extension.
 fs::path name_beside(const fs::path& path) {
   std::random_device random;
-  return path.parent_path() / (".ps-" + std::to_string(random()) + path.extension().string());
+  return path.parent_path() / (kBegin + std::to_string(getpid()) + "-" + std::to_string(random()) +
+                               path.extension().string());
+}
+
+void remove_leftovers_once(const fs::path& folder) {
+  static std::mutex mutex;
+  static std::set<fs::path> seen;
+  const std::lock_guard<std::mutex> lock(mutex);
+  std::error_code ignored;
+  const fs::path known = fs::canonical(folder, ignored);
+  if (!seen.insert(known).second) return;
+  const auto name = [](const std::string& text) { return process_of(text, kBegin, "-"); };
+  remove_leftovers(known, fs::file_type::regular, name);
 }
 
 /// Those that the files of this thread wait in.
@@ -48,6 +66,7 @@ thread_local AtomicFiles* together = nullptr;
 }  // namespace
 
 AtomicFile::AtomicFile(const fs::path& path) : path_(checked_place(path)) {
+  remove_leftovers_once(path_.has_parent_path() ? path_.parent_path() : fs::path("."));
   // open() and not mkstemp(): the file gets the permissions that the user's umask asks for.
   for (int attempt = 0; attempt < 100 && descriptor_ < 0; ++attempt) {
     temporary_ = name_beside(path_);
@@ -55,6 +74,7 @@ AtomicFile::AtomicFile(const fs::path& path) : path_(checked_place(path)) {
     if (descriptor_ < 0 && errno != EEXIST) break;
   }
   if (descriptor_ < 0) fail(path_, "cannot be written: ", errno);
+  flock(descriptor_, LOCK_EX | LOCK_NB);  // tells others that it is in use
 }
 
 AtomicFile::~AtomicFile() {
@@ -74,14 +94,21 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
   }
 }
 
+void AtomicFile::check_room(std::size_t bytes) const {
+  const off_t end = lseek(descriptor_, 0, SEEK_END);
+  const int code = posix_fallocate(descriptor_, end, static_cast<off_t>(bytes));
+  if (code != 0) fail(path_, "writing failed: ", code);
+}
+
 void AtomicFile::commit() {
   if (fsync(descriptor_) != 0) fail(path_, "writing failed: ", errno);
   if (together != nullptr) {
-    together->files_.push_back({temporary_, path_, {}, false});
+    together->files_.push_back({temporary_, path_, descriptor_, {}, false});
   } else if (rename(temporary_.c_str(), path_.c_str()) != 0) {
     fail(path_, "cannot be put in place: ", errno);
+  } else {
+    close(descriptor_);
   }
-  close(descriptor_);
   descriptor_ = -1;
 }
 
@@ -92,34 +119,60 @@ AtomicFiles::~AtomicFiles() {
   for (const Waiting& file : files_) {
     if (!file.temporary.empty()) unlink(file.temporary.c_str());
   }
+  forget();
 }
 
-void AtomicFiles::remove(const fs::path& path) { files_.push_back({{}, path, {}, false}); }
+void AtomicFiles::remove(const fs::path& path) { files_.push_back({{}, path, -1, {}, false}); }
 
-void AtomicFiles::commit() {
-  for (std::size_t i = 0; i < files_.size(); ++i) {
-    Waiting& file = files_[i];
-    const fs::path before = name_beside(file.place);
-    if (link(file.place.c_str(), before.c_str()) == 0) file.before = before;
-    file.is_new = file.before.empty() && errno == ENOENT;
-    const bool clears = file.temporary.empty();
-    const int result =
-        clears ? unlink(file.place.c_str()) : rename(file.temporary.c_str(), file.place.c_str());
-    if (result == 0 || (clears && errno == ENOENT)) continue;
-    const int code = errno;
-    undo(i + 1);
-    fail(file.place, clears ? "cannot be removed: " : "cannot be put in place: ", code);
+void AtomicFiles::forget() {
+  for (const Waiting& file : files_) {
+    if (file.descriptor >= 0) close(file.descriptor);
+  }
+  files_.clear();
+  last_.clear();
+}
+
+void AtomicFiles::join_outer(const std::function<void()>& last) {
+  outer_->files_.insert(outer_->files_.end(), files_.begin(), files_.end());
+  outer_->last_.insert(outer_->last_.end(), last_.begin(), last_.end());
+  if (last) outer_->last_.push_back(last);
+  files_.clear();
+  last_.clear();
+}
+
+void AtomicFiles::place(Waiting& file) {
+  const fs::path before = name_beside(file.place);
+  if (link(file.place.c_str(), before.c_str()) == 0) file.before = before;
+  file.is_new = file.before.empty() && errno == ENOENT;
+  const bool clears = file.temporary.empty();
+  const int result =
+      clears ? unlink(file.place.c_str()) : rename(file.temporary.c_str(), file.place.c_str());
+  if (result == 0 || (clears && errno == ENOENT)) return;
+  const int code = errno;
+  if (!file.before.empty()) unlink(file.before.c_str());
+  fail(file.place, clears ? "cannot be removed: " : "cannot be put in place: ", code);
+}
+
+void AtomicFiles::commit(const std::function<void()>& last) {
+  if (outer_ != nullptr) return join_outer(last);
+  std::size_t placed = 0;
+  try {
+    for (; placed < files_.size(); ++placed) place(files_[placed]);
+    for (const auto& one : last_) one();
+    if (last) last();
+  } catch (...) {
+    undo(placed);
+    throw;
   }
   for (const Waiting& file : files_) {
     if (!file.before.empty()) unlink(file.before.c_str());
   }
-  files_.clear();
+  forget();
 }
 
-/// Of the first `count` files the last one failed.
+/// Of the first `count` files, which are in place.
 void AtomicFiles::undo(std::size_t count) {
-  if (!files_[count - 1].before.empty()) unlink(files_[count - 1].before.c_str());
-  for (std::size_t i = count - 1; i-- > 0;) {
+  for (std::size_t i = count; i-- > 0;) {
     const Waiting& file = files_[i];
     if (!file.before.empty()) {
       rename(file.before.c_str(), file.place.c_str());

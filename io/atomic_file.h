@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,8 @@ namespace ps {
 
 /// @brief A file that appears whole or not at all: written beside its place, then renamed.
 /// It replaces a file of that name; where the name is a symbolic link, the file that it leads to.
+/// What processes that were killed left in its folder is removed when the first of a process is
+/// made there.
 class AtomicFile {
  public:
   /// Makes no parent folder. Throws ps::Error when the folder is not there or cannot be written, or
@@ -23,6 +26,9 @@ class AtomicFile {
   const std::filesystem::path& temporary() const { return temporary_; }
   void write(const void* data, std::size_t bytes);
   void write(const std::string& text) { write(text.data(), text.size()); }
+  /// Throws ps::Error, as write() does, when the disk or a limit has no room for so many bytes
+  /// more: for writers of temporary() that fail and do not say why.
+  void check_room(std::size_t bytes) const;
   /// Flushes, checks, and puts the file in its place, or hands it to the AtomicFiles that live on
   /// this thread. Throws ps::Error when the disk is full. Once.
   void commit();
@@ -35,7 +41,8 @@ class AtomicFile {
 
 /// @brief Files that appear together or not at all. Every AtomicFile that this thread commits
 /// while the object lives waits beside its place, whichever function writes it, until all are put
-/// in place.
+/// in place. One that is made while another lives joins it: its commit() hands its files to the
+/// outer one. Objects end in the reverse of the order in which they were made.
 class AtomicFiles {
  public:
   AtomicFiles();
@@ -45,22 +52,28 @@ class AtomicFiles {
 
   /// An earlier file of this name goes when the others come.
   void remove(const std::filesystem::path& path);
-  /// Puts all in their places. Throws ps::Error when one cannot be; then the places hold again what
+  /// Puts all in their places, then calls `last`, if given, which may put something else in place.
+  /// Throws ps::Error when one cannot be, and what `last` throws; then the places hold again what
   /// they held (but for files replaced before it where the file system has no hard links).
-  void commit();
+  void commit(const std::function<void()>& last = {});
 
  private:
   friend class AtomicFile;
   struct Waiting {
     std::filesystem::path temporary;  ///< empty: the place is to be cleared
     std::filesystem::path place;
+    int descriptor = -1;           ///< of `temporary`: keeps its lock
     std::filesystem::path before;  ///< what was there, under another name
     bool is_new = false;           ///< nothing was there
   };
+  void join_outer(const std::function<void()>& last);
+  void place(Waiting& file);
   void undo(std::size_t count);
+  void forget();
 
   AtomicFiles* outer_;
   std::vector<Waiting> files_;
+  std::vector<std::function<void()>> last_;  ///< of those that joined
 };
 
 }  // namespace ps

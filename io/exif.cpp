@@ -5,7 +5,8 @@
 
 #include <cmath>
 #include <memory>
-#include <string>
+
+#include "libps/core/words.h"
 
 namespace ps {
 namespace {
@@ -65,6 +66,20 @@ std::optional<double> Exif::focal_px(cv::Size size) const {
   // A tenth of the side sees 157 degrees; 200 sides see a quarter of one.
   if (!(focal >= 0.1 * side && focal <= 200 * side)) return std::nullopt;
   return focal;
+}
+
+std::string Exif::focal_doubt(cv::Size size) const {
+  constexpr double kLeast = 0.5, kMost = 5000;  // millimetres; of a phone's and a telescope's lens
+  if (focal_px(size)) return "";
+  if (focal_35mm > 0) {
+    return "a focal length of " + in_digits(focal_35mm) + " mm for 35 mm film, which cannot be";
+  }
+  if (!(focal_mm > 0)) return "";
+  const std::string length = "a focal length of " + in_digits(focal_mm) + " mm";
+  const bool believable = focal_mm >= kLeast && focal_mm <= kMost;
+  if (!believable) return length + ", which cannot be";
+  if (!(pixels_per_mm > 0)) return length + " but not how large the sensor is";
+  return length + " at " + in_digits(pixels_per_mm) + " pixels per mm, which cannot be";
 }
 
 }  // namespace ps

@@ -4,6 +4,7 @@
 
 #include <opencv2/core/types.hpp>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace ps {
@@ -19,6 +20,9 @@ struct Exif {
   /// @param size  of the image in the file, before it is turned upright
   /// @return the focal length in pixels; empty when unknown or not believable
   std::optional<double> focal_px(cv::Size size) const;
+  /// @return what it tells of the focal length where focal_px() is empty, and why that is no help:
+  /// "a focal length of 0.1 mm, which cannot be"; empty when it tells nothing
+  std::string focal_doubt(cv::Size size) const;
 };
 
 /// @param tiff  the block from its TIFF header on, as check_image_bytes() returns it; may be empty

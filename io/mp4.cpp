@@ -78,7 +78,7 @@ std::string index_first(std::string bytes, const std::string& name) {
     if (box.kind == "mdat") mdat = &box;
   }
   if (ftyp == nullptr || moov == nullptr || mdat == nullptr) {
-    throw Error(name, "the video was not finished (is the disk full?)", "a whole MP4");
+    throw Error(name, "the video was not finished", "a whole MP4");
   }
   if (moov->begin < mdat->begin) return bytes;
   std::string index = bytes.substr(moov->begin, moov->size);

@@ -67,6 +67,7 @@ Photo parse_photo(std::string_view bytes, const std::string& name) {
       throw Error(name, "its pixels are not integers", "8 or 16 bits for each channel");
     }
     photo.focal_px = exif.focal_px(stored.size());
+    photo.focal_doubt = exif.focal_doubt(stored.size());
     return photo;
   });
 }

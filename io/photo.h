@@ -17,6 +17,8 @@ struct Photo {
   /// intrinsics_from_focal_35mm(), or from FocalLength and the focal plane's resolution); empty
   /// when the file does not say.
   std::optional<double> focal_px;
+  /// What the file tells of its focal length instead, for messages; empty where it tells nothing.
+  std::string focal_doubt;
 };
 
 /// @brief Reads JPEG, PNG, TIFF, WebP, BMP and PNM; grey and alpha become RGB; 8 and 16 bit.

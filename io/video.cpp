@@ -13,6 +13,21 @@
 
 namespace ps {
 
+namespace {
+
+/// What the encoder asks of the disk at a time is less.
+constexpr std::size_t kRoom = 1 << 20;
+
+/// The encoder does not say why it failed: throws ps::Error when the disk or a limit is why.
+std::string finished(const AtomicFile& file, const std::string& name) try {
+  return index_first(std::string(FileBytes(file.temporary()).view()), name);
+} catch (const Error&) {
+  file.check_room(kRoom);
+  throw;
+}
+
+}  // namespace
+
 struct VideoWriter::Impl {
   AtomicFile file;
   std::string name;
@@ -38,6 +53,7 @@ VideoWriter::VideoWriter(const std::filesystem::path& path, cv::Size size, doubl
     impl_->encoder.open(impl_->file.temporary().string(), cv::CAP_FFMPEG,
                         cv::VideoWriter::fourcc('a', 'v', 'c', '1'), rate, even);
     if (!impl_->encoder.isOpened()) {
+      impl_->file.check_room(kRoom);
       throw Error(name, "OpenCV has no H.264 encoder for it", "OpenCV with FFmpeg and libx264");
     }
   });
@@ -63,9 +79,8 @@ void VideoWriter::close() {
   guarded(impl->name, [&] {
     impl->encoder.release();
     if (impl->frames == 0) throw Error(impl->name, "the video has no frame", "one at least");
-    const FileBytes written(impl->file.temporary());
     // As many bytes as before: they replace what the encoder wrote.
-    impl->file.write(index_first(std::string(written.view()), impl->name));
+    impl->file.write(finished(impl->file, impl->name));
     impl->file.commit();
   });
 }

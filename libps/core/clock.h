@@ -14,4 +14,17 @@ inline double seconds_since(Instant start) {
   return std::chrono::duration<double>(now() - start).count();
 }
 
+/// Adds the seconds of its life to a sum.
+class AddedSeconds {
+ public:
+  explicit AddedSeconds(double& sum) : sum_(sum) {}
+  ~AddedSeconds() { sum_ += seconds_since(start_); }
+  AddedSeconds(const AddedSeconds&) = delete;
+  AddedSeconds& operator=(const AddedSeconds&) = delete;
+
+ private:
+  double& sum_;
+  const Instant start_ = now();
+};
+
 }  // namespace ps

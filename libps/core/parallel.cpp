@@ -30,6 +30,7 @@ struct Loop {
       try {
         (*body)(i);
       } catch (...) {
+        next = count;  // all below i have begun; no other can change which error is thrown
         const std::lock_guard<std::mutex> lock(error_mutex);
         if (i < error_index) {
           error_index = i;

@@ -17,7 +17,7 @@ int threads();
 ///
 /// Iterations may run in any order and must not depend on each other; whatever they write must not
 /// depend on the thread. A loop started inside a loop runs on the calling thread alone. Returns
-/// when all are done. If iterations throw, the exception of the smallest i is thrown again here.
+/// when all are done. Once one throws no more begin; the error of the smallest i is thrown again.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
 /// @brief Splits [0, count) into `chunk`-sized ranges and calls `body(begin, end)` for each.

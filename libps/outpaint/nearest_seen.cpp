@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "libps/outpaint/nearest_seen.h"
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -21,6 +22,16 @@ cv::Mat1i nearest_seen(const cv::Mat1b& missing) {
   }
   for (int& label : labels) label = seen[static_cast<std::size_t>(label)];
   return labels;
+}
+
+nn::Tensor with_nearest_colors(const nn::TensorView& image, const cv::Mat1b& missing) {
+  nn::Tensor whole(image.shape);
+  const cv::Mat1i nearest = nearest_seen(missing);
+  for (std::size_t i = 0; i < image.shape.pixels(); ++i) {
+    const auto from = nearest.empty() ? i : static_cast<std::size_t>(nearest.ptr<int>()[i]);
+    std::copy_n(image.pixel(from), 3, whole.view().pixel(i));
+  }
+  return whole;
 }
 
 }  // namespace ps::outpaint

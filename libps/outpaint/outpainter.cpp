@@ -2,31 +2,19 @@
 #include "libps/outpaint/outpainter.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 #include <numeric>
 
+#include "libps/core/clock.h"
 #include "libps/core/error.h"
 #include "libps/outpaint/nearest_seen.h"
 #include "libps/outpaint/progress.h"
 #include "libps/outpaint/view_pictures.h"
+#include "libps/outpaint/work.h"
 
 namespace ps::outpaint {
 namespace {
-
-class Clock {
- public:
-  explicit Clock(double& seconds) : seconds_(seconds) {}
-  ~Clock() {
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start_;
-    seconds_ += took.count();
-  }
-
- private:
-  double& seconds_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 void check(const OutpaintOptions& options) {
   constexpr int kMostSamples = 1000;
@@ -76,39 +64,6 @@ int kept(const std::vector<Completion>& completions, OutpaintOptions::Keep keep)
   return static_cast<int>(best_of(agreed ? agreement(completions) : likelihoods_of(completions)));
 }
 
-/// About how long everything takes, for progress: milliseconds at the published widths.
-struct Work {
-  double encode, sample, decode, refine, refine_rest, score;  ///< of one completion
-  double whole;                                               ///< at most
-
-  Work(const OutpaintOptions& options, int samples, std::size_t missing, std::size_t scorers,
-       double pixels, double changed) {
-    constexpr double kView = 256 * 256;  // pixels that the times are of
-    encode = 11 * pixels / kView;
-    sample = 0.014 * static_cast<double>(missing);
-    decode = 12 * changed / kView;
-    refine = 220 * changed / kView;
-    refine_rest = changed < pixels ? 220 * pixels / kView : 0;
-    score = 27 * static_cast<double>(scorers) * pixels / kView;
-    const int asked = scorers == 0 ? 1 : options.refine_best;
-    const bool few = asked > 0 && asked < samples;
-    const bool screens = scorers > 0 && few && options.screen == OutpaintOptions::Screen::unrefined;
-    whole = encode + refine_rest + samples * (sample + (screens ? decode + score : 0)) +
-            (few ? asked : samples) * (decode + refine + score) + decode + refine;
-  }
-};
-
-/// The projection, with the nearest colours where it is missing.
-nn::Tensor continued(const nn::TensorView& projection, const cv::Mat1b& background) {
-  nn::Tensor whole(projection.shape);
-  const cv::Mat1i nearest = nearest_seen(background);
-  for (std::size_t i = 0; i < projection.shape.pixels(); ++i) {
-    const auto from = nearest.empty() ? i : static_cast<std::size_t>(nearest.ptr<int>()[i]);
-    std::copy_n(projection.pixel(from), 3, whole.view().pixel(i));
-  }
-  return whole;
-}
-
 bool all_finite(const nn::TensorView& image) {
   const float* end = image.pixel(image.shape.pixels());
   return std::all_of<const float*>(image.data, end, [](float x) { return std::isfinite(x); });
@@ -138,10 +93,10 @@ Outpainter::Outpainter(Networks networks) : networks_(std::move(networks)) {
 std::vector<std::int32_t> Outpainter::encode(View& view, const nn::TensorView& projection,
                                              const cv::Mat1b& background) {
   view.progress.at(0);
-  const Clock clock(view.result.report.encode_seconds);
+  const AddedSeconds clock(view.result.report.encode_seconds);
   std::vector<std::int32_t> codes(networks_.autoencoder->grid(projection.shape).pixels());
   if (view.options.encode_nearest) {
-    const nn::Tensor whole = continued(projection, background);
+    const nn::Tensor whole = with_nearest_colors(projection, background);
     networks_.autoencoder->encode(whole, codes.data(), workspace_);
   } else {
     networks_.autoencoder->encode(projection, codes.data(), workspace_);
@@ -150,7 +105,7 @@ std::vector<std::int32_t> Outpainter::encode(View& view, const nn::TensorView& p
 }
 
 void Outpainter::sample(View& view, Sampler& sampler, int count) {
-  const Clock clock(view.result.report.sample_seconds);
+  const AddedSeconds clock(view.result.report.sample_seconds);
   const double work = count * view.work.sample;
   SampleOptions options;
   options.temperature = view.options.temperature;
@@ -167,13 +122,13 @@ void Outpainter::sample(View& view, Sampler& sampler, int count) {
 }
 
 void Outpainter::decode(View& view, int number) {
-  const Clock clock(view.result.report.decode_seconds);
+  const AddedSeconds clock(view.result.report.decode_seconds);
   view.pictures.decode(view.completions[static_cast<std::size_t>(number)].codes, workspace_);
   view.progress.done(view.work.decode);
 }
 
 void Outpainter::refine(View& view, int number) {
-  const Clock clock(view.result.report.refine_seconds);
+  const AddedSeconds clock(view.result.report.refine_seconds);
   view.pictures.refine(workspace_);
   view.shown = number;
   if (!all_finite(view.pictures.image())) {
@@ -187,7 +142,7 @@ void Outpainter::refine(View& view, int number) {
 
 void Outpainter::score(View& view, const nn::TensorView& image, int number,
                        std::vector<Signal>& signals) {
-  const Clock clock(view.result.report.score_seconds);
+  const AddedSeconds clock(view.result.report.score_seconds);
   std::size_t signal = 0;
   for (const Scorer& scorer : networks_.scorers) {
     const double score = scorer.score(image, workspace_);
@@ -294,7 +249,7 @@ Outpainted Outpainter::outpaint(const nn::TensorView& projection, const cv::Mat1
   report.levels = sampler.levels();
   view.progress.done(work.encode);
   {
-    const Clock clock(report.refine_seconds);
+    const AddedSeconds clock(report.refine_seconds);
     pictures.refine_rest(workspace_);
   }
   view.progress.done(work.refine_rest);

@@ -40,7 +40,8 @@ void check(const std::vector<PlannedView>& views, const BudgetOptions& o) {
 /// Pictures of the whole cloud, for those of thinned ones to be held against.
 class Pictures {
  public:
-  Pictures(const Cloud& cloud, const std::vector<PlannedView>& views, float radius) {
+  Pictures(const Cloud& cloud, const std::vector<PlannedView>& views, float radius, Meter* meter)
+      : meter_(meter) {
     options_.radius = radius;
     options_.renormalise = true;
     const std::size_t count = std::min(kPictures, views.size());
@@ -62,9 +63,11 @@ class Pictures {
 
  private:
   Splat draw(const Cloud& cloud, const PlannedView& view) const {
+    meter_->add(0);
     return closed_splat(cloud, view.intrinsics, view.world_from_cam, options_);
   }
 
+  Meter* const meter_;
   SplatOptions options_;
   std::vector<PlannedView> views_;
   std::vector<Splat> whole_;
@@ -108,11 +111,16 @@ class Search {
   /// @param others  numbers of points that stay as they are
   Search(const Cloud& cloud, const std::vector<Sample>& seen,
          const std::vector<std::uint32_t>& others, const BudgetOptions& options,
-         BudgetReport* report)
-      : cloud_(cloud), seen_(seen), others_(others), options_(options), report_(*report) {}
+         BudgetReport* report, Meter* meter)
+      : cloud_(cloud),
+        seen_(seen),
+        others_(others),
+        options_(options),
+        report_(*report),
+        meter_(meter) {}
 
   Cloud run(const std::vector<PlannedView>& views) const {
-    const Thinner thinner(seen_, options_);
+    const Thinner thinner(seen_, options_, meter_);
     if (options_.psnr <= 0 && options_.points == 0) {
       report_.tolerance = options_.tolerance;
       return cloud_of(cloud_, thinner.at(std::min(255 * options_.tolerance, Thinner::kAllColors)),
@@ -120,7 +128,7 @@ class Search {
     }
     const std::size_t most = options_.points - std::min(options_.points, others_.size());
     if (options_.psnr <= 0) return cloud_of(cloud_, thinner.down_to(most, &report_), others_);
-    const Pictures pictures(cloud_, views, options_.radius);
+    const Pictures pictures(cloud_, views, options_.radius, meter_);
     std::vector<Sample> samples = thinned_while_alike(thinner, pictures);
     if (options_.points > 0 && samples.size() > most) samples = thinner.down_to(most, &report_);
     Cloud result = cloud_of(cloud_, samples, others_);
@@ -141,7 +149,7 @@ class Search {
     report_.tolerance = 0;
     for (int halving = 0; halving < kHalvings; ++halving) {
       report_.pixels = finer.pixels /= 2;
-      best = Thinner(seen_, finer).at(0);
+      best = Thinner(seen_, finer, meter_).at(0);
       if (alike(best, pictures)) return best;
     }
     report_.pixels = 0;
@@ -170,6 +178,7 @@ class Search {
   const std::vector<std::uint32_t>& others_;
   const BudgetOptions& options_;
   BudgetReport& report_;
+  Meter* const meter_;
 };
 
 }  // namespace
@@ -183,13 +192,16 @@ Cloud thinned(const Cloud& cloud, const std::vector<PlannedView>& views,
   told = {};
   told.pixels = options.pixels;
   std::vector<std::uint32_t> others;
-  const std::vector<Sample> seen = seen_samples(cloud, views, options.radius, &others);
+  Meter meter(options.progress);
+  const std::vector<Sample> seen = seen_samples(cloud, views, options.radius, &others, &meter);
   told.unseen = others.size();
   told.not_finite = cloud.size() - seen.size() - others.size();
   if (options.drop_unseen && !views.empty()) others.clear();
   const std::size_t finite = seen.size() + others.size();
   Cloud result = seen.empty() ? cloud_of(cloud, {}, others)
-                              : Search(cloud, seen, others, options, &told).run(views);
+                              : Search(cloud, seen, others, options, &told, &meter).run(views);
+  meter.stage(1, 1);
+  meter.add(1);
   told.points = result.size();
   told.merged = finite - result.size();
   return result;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "libps/geometry/camera.h"
@@ -35,6 +36,10 @@ struct BudgetOptions {
   double psnr = 0;
   float radius = 4;          ///< of the widest splats, pixels (closed_splat.h)
   bool drop_unseen = false;  ///< leave out what no planned view can see
+  /// Told what share is done, from 0 to 1 and never falling; of searches for a target that is an
+  /// estimate. One call at a time, from any thread, several in a second. What it throws comes out
+  /// of thinned().
+  std::function<void(double done)> progress = {};
 };
 
 /// What became of a cloud; counts of points.

@@ -16,7 +16,7 @@ struct Turn {
   std::uint32_t sample;
 };
 
-std::vector<Turn> turns_of(const std::vector<std::uint32_t>& cells, const SampleGrid& grid,
+std::vector<Turn> turns_of(const SampleGrid::Span& cells, const SampleGrid& grid,
                            const std::vector<float>& reach) {
   std::vector<Turn> turns;
   for (const std::uint32_t cell : cells) {
@@ -32,8 +32,12 @@ std::vector<Turn> turns_of(const std::vector<std::uint32_t>& cells, const Sample
 class Speakers {
  public:
   Speakers(const std::vector<Sample>& samples, const SampleGrid& grid,
-           const std::vector<float>& reach)
-      : samples_(samples), grid_(grid), reach_(reach), speaker_(samples.size(), kLeft) {}
+           const std::vector<float>& reach, Meter* meter)
+      : samples_(samples),
+        grid_(grid),
+        reach_(reach),
+        meter_(meter),
+        speaker_(samples.size(), kLeft) {}
 
   std::vector<std::uint32_t> find() {
     // What shows detail comes first everywhere, so that nobody of longer reach takes it.
@@ -46,10 +50,12 @@ class Speakers {
  private:
   template <typename Chosen>
   void run(const Chosen& chosen) {
-    grid_.for_each_block([&](const std::vector<std::uint32_t>& cells) {
+    grid_.for_each_block([&](const SampleGrid::Span& cells) {
       std::vector<std::uint32_t> around;
       std::uint32_t gathered = UINT32_MAX;
-      for (const Turn& turn : turns_of(cells, grid_, reach_)) {
+      const std::vector<Turn> turns = turns_of(cells, grid_, reach_);
+      if (meter_) meter_->add(turns.size());
+      for (const Turn& turn : turns) {
         if (speaker_[turn.sample] != kLeft || !chosen(turn.reach)) continue;
         speaker_[turn.sample] = turn.sample;
         if (turn.reach <= 0) continue;
@@ -72,6 +78,7 @@ class Speakers {
   const std::vector<Sample>& samples_;
   const SampleGrid& grid_;
   const std::vector<float>& reach_;
+  Meter* const meter_;
   std::vector<std::uint32_t> speaker_;
 };
 
@@ -91,9 +98,10 @@ void take(Sample* speaker, const Sample& other) {
 }  // namespace
 
 std::vector<Sample> merged(const std::vector<Sample>& samples, const SampleGrid& grid,
-                           const std::vector<float>& reach) {
+                           const std::vector<float>& reach, Meter* meter) {
   if (samples.empty()) return {};
-  const std::vector<std::uint32_t> speaker = Speakers(samples, grid, reach).find();
+  const std::vector<std::uint32_t> speaker = Speakers(samples, grid, reach, meter).find();
+  if (meter) meter->add(0);
   std::vector<std::uint32_t> place(samples.size());
   std::vector<Sample> result;
   for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -13,8 +13,9 @@ namespace ps {
 /// (Poisson-disk sampling by dart throwing, Cook, ACM TOG 1986, with the samples as darts.)
 /// @param grid   of cells of at least the greatest reach
 /// @param reach  pixels, one for each sample; 0 takes none
+/// @param meter  if given, told of samples, as parts of its stage
 /// @return those that took themselves, in order
 std::vector<Sample> merged(const std::vector<Sample>& samples, const SampleGrid& grid,
-                           const std::vector<float>& reach);
+                           const std::vector<float>& reach, Meter* meter = nullptr);
 
 }  // namespace ps

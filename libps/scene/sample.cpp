@@ -11,7 +11,9 @@ namespace ps {
 namespace {
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
-constexpr double kNear = 1e-3;          ///< metres; SplatOptions::near
+constexpr double kNear = 1e-3;                ///< metres; SplatOptions::near
+constexpr std::size_t kRun = 1 << 16;         ///< points that are sorted at once
+constexpr double kSorted = 0.1, kSeen = 0.3;  ///< shares of a thinning that are done then
 constexpr std::size_t kTogether = 512;  ///< points that are held against the views' frusta at once
 
 struct Place {
@@ -28,8 +30,32 @@ std::uint64_t spaced_out(std::uint64_t x) {
   return (x | x << 2) & 0x1249249249249249;
 }
 
+/// Sorts on all threads, in steps between which the meter can stop it.
+void sort(std::vector<Place>* places, Meter* meter) {
+  const auto less = [](const Place& a, const Place& b) {
+    return a.code != b.code ? a.code < b.code : a.point < b.point;
+  };
+  const std::size_t count = places->size();
+  const auto at = [&](std::size_t i) {
+    return places->begin() + static_cast<std::ptrdiff_t>(std::min(i, count));
+  };
+  std::size_t passes = 1;
+  for (std::size_t run = kRun; run < count; run *= 2) ++passes;
+  if (meter) meter->stage(kSorted, passes * count);
+  parallel_chunks(count, kRun, [&](std::size_t begin, std::size_t end) {
+    std::sort(at(begin), at(end), less);
+    if (meter) meter->add(end - begin);
+  });
+  for (std::size_t run = kRun; run < count; run *= 2) {
+    parallel_chunks(count, 2 * run, [&](std::size_t begin, std::size_t end) {
+      std::inplace_merge(at(begin), at(begin + run), at(end), less);
+      if (meter) meter->add(end - begin);
+    });
+  }
+}
+
 /// Finite points along Morton's curve, which keeps neighbours together.
-std::vector<Place> places_of(const Cloud& cloud) {
+std::vector<Place> places_of(const Cloud& cloud, Meter* meter) {
   Eigen::AlignedBox3d box;
   std::vector<Place> places;
   places.reserve(cloud.size());
@@ -48,9 +74,7 @@ std::vector<Place> places_of(const Cloud& cloud) {
                        spaced_out(static_cast<std::uint64_t>(step.z())) << 2;
     }
   });
-  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
-    return a.code != b.code ? a.code < b.code : a.point < b.point;
-  });
+  sort(&places, meter);
   return places;
 }
 
@@ -134,17 +158,19 @@ Sample sample_of(const Point& p, std::uint32_t number) {
 }  // namespace
 
 std::vector<Sample> seen_samples(const Cloud& cloud, const std::vector<PlannedView>& views,
-                                 double margin, std::vector<std::uint32_t>* unseen) {
+                                 double margin, std::vector<std::uint32_t>* unseen, Meter* meter) {
   std::vector<Frustum> frusta;
   frusta.reserve(views.size());
   for (const PlannedView& view : views) frusta.emplace_back(view, margin);
-  const std::vector<Place> places = places_of(cloud);
+  const std::vector<Place> places = places_of(cloud, meter);
+  if (meter) meter->stage(kSeen, places.size());
   std::vector<Sample> samples(places.size());
   parallel_chunks(places.size(), kTogether, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       samples[i] = sample_of(cloud[places[i].point], places[i].point);
     }
     find_pixels(frusta, samples.data() + begin, samples.data() + end);
+    if (meter) meter->add(end - begin);
   });
   unseen->clear();
   for (const Sample& s : samples) {

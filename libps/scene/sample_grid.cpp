@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "libps/core/parallel.h"
 
@@ -14,15 +15,7 @@ constexpr int kBlockBits = 2;   ///< blocks are 4 cells wide
 constexpr int kPlaces = 24;     ///< bits of a float
 constexpr int kOriginBits = 8;
 constexpr std::size_t kPhases = 16;
-
-std::size_t hash_of(const KeyTable::Key& key) {
-  std::uint64_t h = 0;
-  for (const std::int32_t k : key) {
-    h = (h ^ static_cast<std::uint32_t>(k)) * 0x9e3779b97f4a7c15;
-    h ^= h >> 29;
-  }
-  return h;
-}
+constexpr std::size_t kSteps = 1 << 14;  ///< samples between two words to the meter
 
 /// The grid of a sample: cells of floats far from zero are not made finer than the floats are.
 int level_of(const Sample& sample, float pixel) {
@@ -32,36 +25,12 @@ int level_of(const Sample& sample, float pixel) {
 
 }  // namespace
 
-std::size_t KeyTable::slot_of(const Key& key) const {
-  const std::size_t mask = slots_.size() - 1;
-  std::size_t slot = hash_of(key) & mask;
-  while (slots_[slot] != kNone && keys_[slots_[slot]] != key) slot = (slot + 1) & mask;
-  return slot;
-}
-
-std::uint32_t KeyTable::find(const Key& key) const {
-  return slots_.empty() ? kNone : slots_[slot_of(key)];
-}
-
-std::uint32_t KeyTable::find_or_add(const Key& key) {
-  if (2 * keys_.size() >= slots_.size()) {
-    slots_.assign(std::max<std::size_t>(64, 2 * slots_.size()), kNone);  // stays a power of two
-    for (std::size_t i = 0; i < keys_.size(); ++i) {
-      slots_[slot_of(keys_[i])] = static_cast<std::uint32_t>(i);
-    }
-  }
-  std::uint32_t& slot = slots_[slot_of(key)];
-  if (slot == kNone) {
-    slot = static_cast<std::uint32_t>(keys_.size());
-    keys_.push_back(key);
-  }
-  return slot;
-}
-
-SampleGrid::SampleGrid(const std::vector<Sample>& samples, float pixels) : pixels_(pixels) {
+SampleGrid::SampleGrid(const std::vector<Sample>& samples, float pixels, Meter* meter)
+    : pixels_(pixels) {
   std::vector<std::uint32_t> cell_of(samples.size());
   std::vector<std::pair<std::uint32_t, std::uint32_t>> guests;  // cell, sample
   for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (meter && i % kSteps == 0) meter->add(i == 0 ? 0 : kSteps);
     const Sample& s = samples[i];
     const int level = level_of(s, s.pixel);
     cell_of[i] = table_.find_or_add(key_of(s, level));
@@ -71,10 +40,10 @@ SampleGrid::SampleGrid(const std::vector<Sample>& samples, float pixels) : pixel
     guests.emplace_back(table_.find_or_add(key_of(s, other)), static_cast<std::uint32_t>(i));
   }
   fill_cells(cell_of, guests);
-  fill_blocks();
+  fill_blocks(meter);
 }
 
-KeyTable::Key SampleGrid::key_of(const Sample& sample, int level) const {
+CellTable::Key SampleGrid::key_of(const Sample& sample, int level) const {
   const double inverse_width = std::ldexp(1.0 / pixels_, -level - 1);
   const auto step = [&](float x) {
     return static_cast<std::int32_t>(std::floor(x * inverse_width));
@@ -104,44 +73,47 @@ void SampleGrid::fill_cells(const std::vector<std::uint32_t>& cell_of,
   for (const auto& [cell, sample] : guests) members_[next[cell]++] = sample;
 }
 
-void SampleGrid::fill_blocks() {
+void SampleGrid::fill_blocks(Meter* meter) {
   KeyTable blocks;
-  phases_.resize(kPhases);
-  std::vector<std::vector<std::uint32_t>*> block_cells;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> places;  // phase, number in it
+  std::vector<std::uint32_t> block_of(cells());
   for (std::size_t c = 0; c < cells(); ++c) {
-    KeyTable::Key key = table_.keys()[c];
-    for (int axis = 0; axis < 3; ++axis) key[axis] >>= kBlockBits;
-    const std::uint32_t block = blocks.find_or_add(key);
-    if (block == places.size()) {
-      const std::uint32_t phase =
-          (key[0] & 1) | (key[1] & 1) << 1 | (key[2] & 1) << 2 | (key[3] >> kOriginBits & 1) << 3;
-      places.emplace_back(phase, static_cast<std::uint32_t>(phases_[phase].size()));
-      phases_[phase].emplace_back();
-    }
-    phases_[places[block].first][places[block].second].push_back(static_cast<std::uint32_t>(c));
+    if (meter && c % kSteps == 0) meter->add(0);
+    CellTable::Key key = table_.keys()[c];
+    for (std::size_t axis = 0; axis < 3; ++axis) key[axis] >>= kBlockBits;
+    block_of[c] = blocks.find_or_add(key);
+  }
+  block_start_.assign(blocks.keys().size() + 1, 0);
+  for (const std::uint32_t block : block_of) ++block_start_[block + 1];
+  std::partial_sum(block_start_.begin(), block_start_.end(), block_start_.begin());
+  block_cells_.resize(cells());
+  std::vector<std::size_t> next(block_start_.begin(), block_start_.end() - 1);
+  for (std::size_t c = 0; c < cells(); ++c) {
+    block_cells_[next[block_of[c]]++] = static_cast<std::uint32_t>(c);
+  }
+  phases_.resize(kPhases);
+  for (std::size_t b = 0; b < blocks.keys().size(); ++b) {
+    const KeyTable::Key& key = blocks.keys()[b];
+    const auto phase = static_cast<std::size_t>(
+        (key[0] & 1) | (key[1] & 1) << 1 | (key[2] & 1) << 2 | (key[3] >> kOriginBits & 1) << 3);
+    phases_[phase].push_back(static_cast<std::uint32_t>(b));
   }
 }
 
 void SampleGrid::list_around(std::size_t cell, std::vector<std::uint32_t>* around) const {
   around->clear();
-  const KeyTable::Key& key = table_.keys()[cell];
-  for (int dz = -1; dz <= 1; ++dz) {
-    for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
-        const std::uint32_t c = table_.find({key[0] + dx, key[1] + dy, key[2] + dz, key[3]});
-        if (c == KeyTable::kNone) continue;
-        around->insert(around->end(), members_.begin() + start_[c],
-                       members_.begin() + start_[c + 1]);
-      }
-    }
+  for (const std::uint32_t c : table_.around(table_.keys()[cell])) {
+    if (c == CellTable::kNone) continue;
+    around->insert(around->end(), members_.begin() + static_cast<std::ptrdiff_t>(start_[c]),
+                   members_.begin() + static_cast<std::ptrdiff_t>(start_[c + 1]));
   }
 }
 
-void SampleGrid::for_each_block(
-    const std::function<void(const std::vector<std::uint32_t>&)>& body) const {
-  for (const auto& blocks : phases_) {
-    parallel_for(blocks.size(), [&](std::size_t i) { body(blocks[i]); });
+void SampleGrid::for_each_block(const std::function<void(const Span& cells)>& body) const {
+  for (const std::vector<std::uint32_t>& blocks : phases_) {
+    parallel_for(blocks.size(), [&](std::size_t i) {
+      const std::uint32_t* const cells = block_cells_.data();
+      body({cells + block_start_[blocks[i]], cells + block_start_[blocks[i] + 1]});
+    });
   }
 }
 

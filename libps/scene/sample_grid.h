@@ -2,32 +2,15 @@
 // Internal to the scene room: who is near whom, where "near" is a number of pixels.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <utility>
 #include <vector>
 
+#include "libps/scene/cell_table.h"
 #include "libps/scene/sample.h"
 
 namespace ps {
-
-/// Numbers for keys, in the order in which they first come.
-class KeyTable {
- public:
-  using Key = std::array<std::int32_t, 4>;
-  static constexpr std::uint32_t kNone = UINT32_MAX;
-
-  std::uint32_t find(const Key& key) const;
-  std::uint32_t find_or_add(const Key& key);
-  const std::vector<Key>& keys() const { return keys_; }
-
- private:
-  std::size_t slot_of(const Key& key) const;
-
-  std::vector<Key> keys_;
-  std::vector<std::uint32_t> slots_;  ///< a power of two of them; kNone = free
-};
 
 /// @brief Samples in cubes of space whose sides are `pixels` to twice that, in each sample's own
 /// pixels: one grid for each power of two of the pixel, and each origin.
@@ -44,7 +27,8 @@ class SampleGrid {
     std::size_t size() const { return static_cast<std::size_t>(last - first); }
   };
 
-  SampleGrid(const std::vector<Sample>& samples, float pixels);
+  /// @param meter  if given, told of samples, as parts of its stage
+  SampleGrid(const std::vector<Sample>& samples, float pixels, Meter* meter = nullptr);
 
   std::size_t cells() const { return table_.keys().size(); }
 
@@ -59,20 +43,22 @@ class SampleGrid {
 
   /// @brief Calls `body(cells)` for all cells, in blocks of 4 x 4 x 4, on all threads. No two
   /// blocks that run at the same time have a sample in common in their cells or next to them.
-  void for_each_block(const std::function<void(const std::vector<std::uint32_t>&)>& body) const;
+  void for_each_block(const std::function<void(const Span& cells)>& body) const;
 
  private:
-  KeyTable::Key key_of(const Sample& sample, int level) const;
+  CellTable::Key key_of(const Sample& sample, int level) const;
   void fill_cells(const std::vector<std::uint32_t>& cell_of,
                   const std::vector<std::pair<std::uint32_t, std::uint32_t>>& guests);
-  void fill_blocks();
+  void fill_blocks(Meter* meter);
 
   float pixels_;
-  KeyTable table_;
+  CellTable table_;
   std::vector<std::size_t> start_;   ///< of each cell in members_, and the end of the last
   std::vector<std::size_t> guests_;  ///< of each cell, where its guests start
   std::vector<std::uint32_t> members_;
-  std::vector<std::vector<std::vector<std::uint32_t>>> phases_;  ///< cells of blocks of phases
+  std::vector<std::size_t> block_start_;  ///< of each block in block_cells_, and the last one's end
+  std::vector<std::uint32_t> block_cells_;
+  std::vector<std::vector<std::uint32_t>> phases_;  ///< blocks that may run at the same time
 };
 
 }  // namespace ps

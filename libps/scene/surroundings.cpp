@@ -82,8 +82,9 @@ int longest_gap(unsigned bits) {
 
 class Looker {
  public:
-  Looker(const std::vector<Sample>& samples, const SampleGrid& grid, const LookOptions& options)
-      : samples_(samples), grid_(grid), options_(options), shown_(samples.size()) {}
+  Looker(const std::vector<Sample>& samples, const SampleGrid& grid, const LookOptions& options,
+         Meter* meter)
+      : samples_(samples), grid_(grid), options_(options), meter_(meter), shown_(samples.size()) {}
 
   std::vector<Surroundings> look() {
     for_each_sample([&](std::uint32_t i, Around& around) { shown_[i] = shown(i, around); });
@@ -98,6 +99,7 @@ class Looker {
     parallel_chunks(grid_.cells(), kCellsAtATime, [&](std::size_t begin, std::size_t end) {
       Around around(samples_, grid_);
       for (std::size_t cell = begin; cell < end; ++cell) {
+        if (meter_) meter_->add(grid_.own(cell).size());
         around.gather(cell);
         for (const std::uint32_t i : grid_.own(cell)) body(i, around);
       }
@@ -181,14 +183,15 @@ class Looker {
   const std::vector<Sample>& samples_;
   const SampleGrid& grid_;
   const LookOptions options_;
+  Meter* const meter_;
   std::vector<Shown> shown_;
 };
 
 }  // namespace
 
 std::vector<Surroundings> look_around(const std::vector<Sample>& samples, const SampleGrid& grid,
-                                      const LookOptions& options) {
-  return Looker(samples, grid, options).look();
+                                      const LookOptions& options, Meter* meter) {
+  return Looker(samples, grid, options, meter).look();
 }
 
 }  // namespace ps

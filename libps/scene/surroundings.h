@@ -37,7 +37,8 @@ struct LookOptions {
 };
 
 /// @brief Looks around every sample.
+/// @param meter  if given, told of samples, each twice, as parts of its stage
 std::vector<Surroundings> look_around(const std::vector<Sample>& samples, const SampleGrid& grid,
-                                      const LookOptions& options);
+                                      const LookOptions& options, Meter* meter = nullptr);
 
 }  // namespace ps

@@ -16,25 +16,28 @@ constexpr float kFinestCell = 1.f / 16;  ///< pixels
 constexpr std::size_t kCrowd = 2;        ///< samples in a cell that are not too many
 constexpr int kRounds = 16;              ///< of a search, at most
 constexpr double kNearEnough = 0.97;     ///< of the points asked for, to end a search
-constexpr double kMostPixels = 4096;     ///< within which a search merges across edges
+constexpr double kUncrowded = 0.5, kLooked = 0.9;  ///< shares of a thinning that are done then
+constexpr double kOfRest = 0.4;                    ///< what a thinning takes of what is left
+constexpr double kMostPixels = 4096;               ///< within which a search merges across edges
 
 /// Merges what is within so many pixels where it is crowded, so that afterwards nobody has very
 /// many neighbours.
-std::vector<Sample> without_crowds(const std::vector<Sample>& samples, float pixels) {
-  const SampleGrid grid(samples, std::max(pixels, kFinestCell));
+std::vector<Sample> without_crowds(const std::vector<Sample>& samples, float pixels, Meter* meter) {
+  if (meter) meter->stage(kUncrowded, 3 * samples.size());
+  const SampleGrid grid(samples, std::max(pixels, kFinestCell), meter);
   std::vector<float> reach(samples.size(), 0);
   for (std::size_t cell = 0; cell < grid.cells(); ++cell) {
     const SampleGrid::Span own = grid.own(cell);
     if (own.size() <= kCrowd) continue;
     for (const std::uint32_t i : own) reach[i] = pixels;
   }
-  return merged(samples, grid, reach);
+  return merged(samples, grid, reach, meter);
 }
 
-/// Merges what is within so many pixels, edges or not.
-std::vector<Sample> merged_across(const std::vector<Sample>& samples, double pixels) {
-  const auto reach = static_cast<float>(pixels);
-  return merged(samples, SampleGrid(samples, reach), std::vector<float>(samples.size(), reach));
+/// Begins the stage of the grid and of looking around.
+const std::vector<Sample>& begin_look(const std::vector<Sample>& samples, Meter* meter) {
+  if (meter) meter->stage(kLooked, 3 * samples.size());
+  return samples;
 }
 
 /// @brief Searches for the largest result that is at most `most`.
@@ -61,18 +64,30 @@ std::vector<Sample> largest_within(std::size_t most, double low, double high, co
 
 }  // namespace
 
-Thinner::Thinner(const std::vector<Sample>& samples, const BudgetOptions& options)
-    : pixels_(static_cast<float>(options.pixels)),
+Thinner::Thinner(const std::vector<Sample>& samples, const BudgetOptions& options, Meter* meter)
+    : meter_(meter),
+      pixels_(static_cast<float>(options.pixels)),
       radius_(std::min(options.radius, kWidestJudged)),
       spacing_(static_cast<float>(options.spacing) * radius_),
-      samples_(without_crowds(samples, pixels_)),
-      grid_(samples_, std::max(radius_, pixels_)),
+      samples_(without_crowds(samples, pixels_, meter)),
+      grid_(begin_look(samples_, meter), std::max(radius_, pixels_), meter),
       surroundings_(look_around(samples_, grid_,
-                                {radius_, std::min(radius_, kFinestSplat), spacing_, pixels_})) {
+                                {radius_, std::min(radius_, kFinestSplat), spacing_, pixels_},
+                                meter)) {
   for (std::size_t i = 0; i < samples_.size(); ++i) samples_[i].clear = surroundings_[i].clear;
 }
 
+/// Merges what is within so many pixels, edges or not.
+std::vector<Sample> Thinner::merged_across(const std::vector<Sample>& samples,
+                                           double pixels) const {
+  const auto reach = static_cast<float>(pixels);
+  if (meter_) meter_->stage_of_rest(kOfRest, 3 * samples.size());
+  return merged(samples, SampleGrid(samples, reach, meter_),
+                std::vector<float>(samples.size(), reach), meter_);
+}
+
 std::vector<Sample> Thinner::at(double tolerance) const {
+  if (meter_) meter_->stage_of_rest(kOfRest, 2 * samples_.size());
   std::vector<float> reach(samples_.size());
   for (std::size_t i = 0; i < reach.size(); ++i) {
     // Multiples of the golden ratio: neighbours in number, and so in space, get unlike fractions.
@@ -81,7 +96,7 @@ std::vector<Sample> Thinner::at(double tolerance) const {
     const auto steps = static_cast<float>(surroundings_[i].alike(given));
     reach[i] = std::max(pixels_, spacing_ * steps / Surroundings::kSteps);
   }
-  return merged(samples_, grid_, reach);
+  return merged(samples_, grid_, reach, meter_);
 }
 
 std::vector<Sample> Thinner::down_to(std::size_t most, BudgetReport* report) const {

@@ -15,7 +15,9 @@ class Thinner {
   static constexpr double kAllColors = Surroundings::kApart - 1;
 
   /// @param samples  as seen_samples() gives them
-  Thinner(const std::vector<Sample>& samples, const BudgetOptions& options);
+  /// @param meter    if given, told of two stages, to 0.9 of all, and of one for each thinning;
+  /// must outlive this
+  Thinner(const std::vector<Sample>& samples, const BudgetOptions& options, Meter* meter = nullptr);
 
   /// @param tolerance  0 to kAllColors; its fraction is the share of the samples, spread evenly,
   /// that are given one more
@@ -26,6 +28,9 @@ class Thinner {
   std::vector<Sample> down_to(std::size_t most, BudgetReport* report) const;
 
  private:
+  std::vector<Sample> merged_across(const std::vector<Sample>& samples, double pixels) const;
+
+  Meter* const meter_;
   const float pixels_;   ///< BudgetOptions::pixels
   const float radius_;   ///< pixels, of splats
   const float spacing_;  ///< pixels

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "libps/train/train.h"
 
-#include <chrono>
 #include <cmath>
 #include <fstream>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "libps/core/clock.h"
 #include "libps/core/error.h"
 #include "libps/core/parallel.h"
 #include "libps/train/checkpoint.h"
@@ -20,7 +20,6 @@ namespace fs = std::filesystem;
 namespace ps::train {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 using Maker = std::unique_ptr<Stage> (*)(const TrainOptions&, torch::Device);
 
 const std::vector<std::pair<std::string, Maker>>& stages() {
@@ -54,10 +53,6 @@ bool is_narrow(const std::string& arithmetic) {
     throw Error("--arithmetic", "'" + arithmetic + "' is unknown", "f32 or bf16");
   }
   return arithmetic == "bf16";
-}
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 /// Rises over the first steps, then falls along a cosine to 0.
@@ -129,7 +124,7 @@ class Run {
   }
 
   TrainReport go() {
-    const Clock::time_point start = Clock::now();
+    const Instant start = now();
     const std::int64_t first = step_;
     bool wanted = true;
     while (wanted && step_ < options_.steps) {
@@ -182,7 +177,7 @@ class Run {
   }
 
   void one() {
-    const Clock::time_point start = Clock::now();
+    const AddedSeconds clock(training_seconds_);
     torch::Generator generator = generator_of(options_.seed, step_);
     Batch batch = train_.batch(
         train_.draw(options_.batch, shares_, wanted_.splats, generator,
@@ -193,7 +188,6 @@ class Run {
     means_.add(
         stage_->step(batch, generator, rate_at(step_, options_.steps, options_.learning_rate)));
     ++step_;
-    training_seconds_ += seconds_since(start);
   }
 
   bool evaluate() {

@@ -57,8 +57,8 @@ json() { sed -n "s/^  \"$1\": \(.*[^,]\),*$/\1/p" "$2"; }
 # size_of PICTURE-OR-VIDEO: 96x64
 size_of() { ffprobe -v error -show_entries stream=width,height -of csv=p=0:s=x "$1" | head -n 1; }
 
-# pixel PICTURE X Y: its colour, "255 0 0"
-pixel() { ffmpeg -v error -i "$1" -vf "crop=1:1:$2:$3" -f rawvideo -pix_fmt rgb24 - | od -An -tu1 | xargs; }
+# pixel PICTURE X Y: its colour, "255 0 0"; of what is no picture, words that no other has
+pixel() { ffmpeg -v error -i "$1" -vf "crop=1:1:$2:$3" -f rawvideo -pix_fmt rgb24 - | od -An -tu1 | xargs || echo "no pixel of $1"; }
 
 needs() { command -v "$1" >/dev/null || { echo "skipped: $1 is not installed"; exit 77; }; }
 

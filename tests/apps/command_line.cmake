@@ -89,6 +89,22 @@ app_test(a_report_that_cannot_be_printed_is_a_failure [=[
   is $got -eq 1
   is "$(wc -l <"$work/err")" -eq 1
   says 'json.*stdout']=])
+app_test(words_that_cannot_be_printed_are_a_failure [=[
+  for args in --help --version "" "fuse --help" "weights info $S/depth.safetensors" "eval cloud $S/mixed.ply $S/mixed.ply"; do
+    got=0
+    $program $args >/dev/full 2>"$work/err" || got=$?
+    is $got -eq 1
+    is "$(wc -l <"$work/err")" -eq 1
+    says '^pixelsynth: stdout: cannot be written: No space left on device'
+  done
+  got=0
+  $program --help >&- 2>"$work/err" || got=$?
+  is $got -eq 1
+  says '^pixelsynth: stdout: cannot be written: ']=])
+app_test(options_given_twice_are_wrong_usage [=[
+  fails 2 'every can be given once; see pixelsynth fuse' fuse $S/walk -o a.ply --every 2 --every 3
+  fails 2 'output can be given once; see pixelsynth render' render $S/mixed.ply -o a.png -o b.png
+  fails 2 'seed can be given once' --seed 1 --seed 2 fuse $S/walk -o a.ply]=])
 app_test(missing_files_are_named [=[
   fails 1 'absent' fuse absent -o a.ply
   fails 1 'absent.ply' render absent.ply -o a.png
@@ -110,6 +126,21 @@ app_test(outputs_that_cannot_be_are_refused_before_the_work [=[
   fails 1 'c.depth.png: is a folder' render $S/mixed.ply -o c.png --depth
   fails 1 's/.* is a f' -q scene $S/photo.png --depth $S/depth.png --no-outpaint -o s
   fails 1 'is a file' scene $S/photo.png --depth $S/depth.png --no-outpaint -o file]=])
+# Neither photo nor weights are there: what is said of the output is said before they are looked at.
+app_test(output_folders_that_cannot_take_a_scene_are_refused_before_the_work [=[
+  args="scene $S/photo.png --depth $S/depth.png --weights $S/photo.png -o"
+  ln -s nowhere link
+  fails 1 '^pixelsynth: link: is a link to nowhere, which is not there; expected' $args link
+  fails 1 '^pixelsynth: link: is a link to nowhere' render $S/mixed.ply -o link/
+  for root in / /.. //; do
+    fails 1 'is the root of all folders; expected a folder in it' $args $root
+  done
+  mkdir -p a/scene.ply b/views/left.png c d/sway.mp4
+  touch c/views
+  fails 1 '^pixelsynth: a/scene.ply: is a folder; expected a file' $args a
+  fails 1 '^pixelsynth: b/views/left.png: is a folder; expected a file' $args b
+  fails 1 '^pixelsynth: c/views: is a file; expected a folder' $args c
+  fails 1 '^pixelsynth: d/sway.mp4: is a folder; expected a file' $args d --paths sway]=])
 app_test(bad_photos_fail_with_one_line [=[
   for f in nothing.jpg truncated.jpg truncated.png text.png damaged.png damaged.bmp damaged.ppm damaged.pgm damaged.tiff damaged.webp; do
     fails 1 $f scene $S/$f --depth $S/depth.png --no-outpaint -o a
@@ -148,6 +179,7 @@ app_test(failures_name_the_output_and_no_unfinished_file [=[
   ulimit -f 1
   trap '' XFSZ
   fails 1 ' r/frame_00000.png: writing failed' -q render $S/mixed.ply -o r
+  fails 1 ' r.mp4: writing failed: File too large' -q render $S/mixed.ply -o r.mp4 --size 320x240 --frames 40
   fails 1 ' s/scene.ply: writing failed' -q scene $S/photo.png --depth $S/depth.png --no-outpaint -o s]=])
 app_test(a_full_disk_leaves_all_outputs_or_none [=[
   works fuse $S/walk -o a.ply --every 3 --hold-out 2
@@ -179,6 +211,11 @@ app_test(what_a_killed_run_left_is_removed_by_the_next [=[
   is "$(ls | grep -c partial)" -eq 7
   writes a/frame_00001.png
   is -e b.partial-4194305/file]=])
+app_test(files_that_a_killed_run_left_are_removed_by_the_next [=[
+  touch .ps-4194305-17.ply .ps-4194306-17.json .ps-$$-17.ply .ps-17.ply .ps-4194305x-17.ply
+  pixelsynth -q fuse $S/walk -o a.ply --every 3
+  writes a.ply
+  is "$(ls -A | grep '^[.]ps-' | LC_ALL=C sort | xargs)" = "$(printf '%s\n' .ps-$$-17.ply .ps-17.ply .ps-4194305x-17.ply | LC_ALL=C sort | xargs)"]=])
 app_test(what_another_run_holds_is_not_removed [=[
   needs flock
   mkdir a.partial-4194305

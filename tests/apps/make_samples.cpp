@@ -324,7 +324,7 @@ void write_lpips(const fs::path& dir) {
 }
 
 /// The photo in other sizes, and one that says its focal length: in its EXIF block, IFD0 points to
-/// an EXIF directory with FocalLengthIn35mmFilm = 28.
+/// an EXIF directory with FocalLengthIn35mmFilm = 28; another says 1.
 void write_sized_photos(const fs::path& dir) {
   for (const cv::Size size : {cv::Size(16, 16), {3000, 500}, {20, 600}, {500, 2}}) {
     Image photo(size);
@@ -344,8 +344,14 @@ void write_sized_photos(const fs::path& dir) {
       "\0\x01\xa4\x05\0\x03\0\0\0\x01\0\x1c\0\0\0\0\0\0"s;
   const std::string jpeg = bytes_of(dir / "photo.jpg");
   const char length[] = {0, static_cast<char>(exif.size() + 2)};
-  write_text(dir / "exif.jpg",
-             jpeg.substr(0, 2) + "\xff\xe1" + std::string(length, 2) + exif + jpeg.substr(2));
+  const auto write = [&](const std::string& name, const std::string& block) {
+    write_text(dir / name,
+               jpeg.substr(0, 2) + "\xff\xe1" + std::string(length, 2) + block + jpeg.substr(2));
+  };
+  write("exif.jpg", exif);
+  std::string odd = exif;
+  odd[odd.find('\x1c')] = 1;
+  write("exif_odd.jpg", odd);
 }
 
 }  // namespace

@@ -24,6 +24,10 @@ app_test(depth_says_where_the_focal_length_comes_from [=[
   works -v depth $S/exif.jpg -o d.png --weights $S/depth.safetensors
   says 'lens: .*EXIF'
   grep -q '"from": "EXIF"' d.report.json]=])
+app_test(depth_names_a_focal_length_that_cannot_be [=[
+  works depth $S/exif_odd.jpg -o d.png --weights $S/depth.safetensors
+  says 'lens: 60 degrees .*, as the photo.s EXIF tells of a focal length of 1 mm for 35 mm film, which cannot be; --intr'
+  grep -q '"from": "default"' d.report.json]=])
 app_test(depth_takes_any_size [=[
   for f in p16x16.png p3000x500.png p20x600.png; do
     works depth $S/$f -o d.png --weights $S/depth.safetensors

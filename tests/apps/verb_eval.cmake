@@ -102,6 +102,18 @@ app_test(eval_cloud_refuses_empty_clouds_and_never_replaces_what_it_reads [=[
   ln -s a.ply b.csv
   fails 1 'b.csv: is .*, which is read' eval cloud a.ply $S/mixed.ply -o b.json]=])
 
+app_test(eval_cloud_counts_points_that_are_not_finite [=[
+  works eval cloud $S/nan.ply $S/mixed.ply -o e.json
+  is "$(grep -c warning "$work/err")" -eq 1
+  says 'warning: .*nan.ply: 2 points are not finite and not scored'
+  is "$(json not_finite e.json)" -eq 2
+  is "$(json true_not_finite e.json)" -eq 0
+  works eval cloud $S/mixed.ply $S/nan.ply -o e.json
+  is "$(json not_finite e.json)" -eq 0
+  is "$(json true_not_finite e.json)" -eq 2
+  works eval cloud $S/mixed.ply $S/mixed.ply
+  is "$(grep -c warning "$work/err")" -eq 0
+  fails 1 'nans.ply: holds no point; 2 points are not finite' eval cloud $S/mixed.ply $S/nans.ply]=])
 app_test(eval_ab_writes_one_page_that_needs_nothing_else [=[
   works eval ab $S/red $S/green -o page.html
   says '^page.html: 14 questions about 6 pairs in '
@@ -142,6 +154,9 @@ app_test(eval_ab_pairs_equal_names_of_equal_sizes [=[
   fails 1 'no image has the name' eval ab $S/red $S/tum -o b.html
   fails 1 'has no image p0' eval ab $S/red $S/green --inputs $S/tum -o b.html
   fails 1 'absent' eval ab absent $S/green -o b.html
+  ln -s $S/red again
+  fails 1 'again: is .*/red, A.s folder; expected pictures of another method' eval ab $S/red again -o b.html
+  fails 1 'red/.: is .*/red, A.s folder' eval ab $S/red $S/red/. -o b.html
   fails 2 'ending in .html' eval ab $S/red $S/green -o b.txt
   fails 2 'names' eval ab $S/red $S/green -o b.html --names one
   fails 2 'sentinels' eval ab $S/red $S/green -o b.html --sentinels -1]=])

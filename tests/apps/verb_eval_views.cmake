@@ -81,6 +81,25 @@ app_test(eval_views_outpaints_and_names_what_its_frechet_distance_is_on [=[
   ! grep -Eq '(^|[^A-Z])FID' v.json || complain "it is called FID"
   grep -Eq '^one-completion,Frechet distance on SqueezeNet 1.1 fire-9 features,[0-9.]+,,,2$' v.csv
   grep -Eq '^one-completion,LPIPS-squeeze,[0-9.]+,' v.csv]=])
+# What stands in the way comes after the checks, while the run works.
+app_test(eval_views_writes_scores_and_pictures_together_or_not_at_all [=[
+  for wall in v.csv p; do
+    "$program" -q eval views rooms:5:8 --methods telea,copy --min-rotation 0 --pairs 8 -o v.json --pictures p 2>"$work/err" & pid=$!
+    for i in $(seq 300); do
+      [ ! -d p.partial-$pid ] || break
+      sleep 0.02
+    done
+    is -d p.partial-$pid
+    [ $wall != v.csv ] || mkdir v.csv
+    [ $wall != p ] || touch p
+    ! wait $pid || complain "it succeeded"
+    says " $wall: "
+    is ! -s v.json
+    is ! -s v.samples.csv
+    [ $wall != v.csv ] || is ! -e p
+    rm -r $wall
+    is "$(find . | wc -l)" -eq 1
+  done]=])
 app_test(eval_views_refuses_other_methods_and_ranges_without_pairs [=[
   fails 2 'methods.*best' eval views $S/walk --methods best
   fails 2 'wide' eval views $S/walk --wide --min-rotation 5

@@ -23,7 +23,7 @@ app_test(scene_does_not_depend_on_threads [=[
 app_test(scene_seed_decides_what_is_invented [=[
   works --seed 1 scene $S/photo.png --fov 70 -o a --samples 1 --directions left
   works --seed 2 scene $S/photo.png --fov 70 -o b --samples 1 --directions left
-  ! cmp -s a/scene.ply b/scene.ply]=])
+  ! cmp -s a/scene.ply b/scene.ply || complain "the seed changes nothing"]=])
 app_test(scene_goes_on_after_an_interruption_to_the_same_bytes [=[
   args="$S/photo.png --fov 70 --samples 8 --directions left,right,up,down"
   works scene $args -o whole
@@ -47,7 +47,7 @@ app_test(scene_strategies_differ [=[
     works scene $S/photo.png --fov 70 -o $s --samples 1 --directions left --strategy $s
   done
   is "$(grep -c '"missing_share".*' support/report.json)" -lt "$(grep -c '"missing_share"' sequential/report.json)"
-  ! cmp -s sequential/views/left.png independent/views/left.png]=])
+  ! cmp -s sequential/views/left.png independent/views/left.png || complain "they look alike"]=])
 app_test(scene_outpaints_further_views_of_a_trajectory [=[
   echo '0 0.2 0 0 0.996 0 0.087 0' > poses.txt
   works scene $S/photo.png --fov 70 -o s --samples 1 --directions left --support-views poses.txt
@@ -111,6 +111,11 @@ app_test(scene_keeps_to_a_budget [=[
   is $auto -lt $((all / 2))
   works scene $args -o near --budget psnr=35
   is "$(json points near/report.json)" -lt $all
+  works scene $args -o one --budget points=1
+  left=$(json points one/report.json)
+  is $left -lt 20
+  says "warning: --budget points=1: $left points stay, as observed and outpainted"
+  grep -q '"points_asked": 1' one/report.json
   for b in few points=0 psnr=x points=; do
     fails 2 "'$b'; expected none, auto, points=N or psnr=DB" scene $args -o t --budget $b
   done]=])

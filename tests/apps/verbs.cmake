@@ -20,7 +20,7 @@ app_test(fuse_names_frames_that_its_study_refuses [=[
   cp -r $S/walk w
   awk '$1 == 3 { $4 -= 1 } 1' $S/walk/trajectory.txt > w/trajectory.txt
   works fuse w -o a.ply --study
-  says 'warning: 1 frames are left out'
+  says 'warning: 1 frame is left out, .* its pose '
   is "$(json refused a.report.json)" -eq 1
   is "$(json without_depth a.report.json)" -eq 0
   is "$(json views a.report.json)" -eq 6
@@ -35,6 +35,13 @@ app_test(fuse_writes_pcd [=[
   is "$(json points "$work/out")" -eq "$(json points b.report.json)"
   is "$(json points b.report.json)" -eq "$(json points a.report.json)"
   fails 2 'compress.*pcd' fuse $S/walk -o c.ply --compress]=])
+app_test(fuse_keeps_the_report_of_a_cloud_of_the_same_name_and_another_kind [=[
+  works fuse $S/walk -o a.ply
+  fails 1 'a.report.json: is the report of a.ply and would be replaced; expected another name than a.pcd' fuse $S/walk -o a.pcd
+  cp a.ply a.pcd
+  works fuse $S/walk -o a.ply
+  rm a.ply
+  works fuse $S/walk -o a.pcd]=])
 app_test(fuse_scales_depth_of_another_size_with_one_warning [=[
   cp -r $S/walk w
   for f in w/depth/*; do cp $S/half.png $f; done
@@ -198,6 +205,16 @@ app_test(scene_writes_all_its_files [=[
   is "$(grep -vc '#' s/trajectory.txt)" -eq 17
   is "$(json outpainted s/report.json)" -eq 0
   says 's: [0-9]+ points']=])
+app_test(scene_again_leaves_no_views_of_an_earlier_scene [=[
+  args="scene $S/photo.png --depth $S/depth.png --no-outpaint"
+  works $args -o s --directions left,up --paths sway --path-frames 2
+  echo mine > s/views/mine.png
+  echo mine > s/circle.mp4
+  works $args -o s --directions right
+  is "$(LC_ALL=C ls s/views | xargs)" = "input.png mine.png right.png right_1.png"
+  is ! -e s/sway.mp4
+  is -e s/circle.mp4
+  is "$(grep -vc '#' s/trajectory.txt)" -eq 3]=])
 app_test(scene_scales_depth_of_another_size_with_a_warning [=[
   works scene $S/photo.png --depth $S/half.png --fov 70 --no-outpaint -o s
   says 'warning.*48x32.*96x64']=])

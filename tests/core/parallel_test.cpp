@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -34,6 +35,16 @@ TEST_P(ParallelFor, throws_the_error_of_the_smallest_index) {
   } catch (const std::runtime_error& error) {
     EXPECT_STREQ(error.what(), "7");
   }
+}
+
+TEST_P(ParallelFor, begins_no_more_after_an_error) {
+  std::atomic<int> begun{0};
+  const auto body = [&](std::size_t) {
+    ++begun;
+    throw std::runtime_error("stop");
+  };
+  EXPECT_THROW(parallel_for(100000, body), std::runtime_error);
+  EXPECT_LE(begun, 1000);  // a few of each thread
 }
 
 TEST_P(ParallelFor, works_inside_itself_and_again_afterwards) {

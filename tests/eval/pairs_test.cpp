@@ -8,11 +8,12 @@
 #include <map>
 #include <random>
 #include <set>
+#include <tuple>
 
 #include "libps/core/error.h"
 #include "libps/core/parallel.h"
+#include "libps/core/random.h"
 #include "tests/support/box_world.h"
-#include "tests/support/room_view.h"
 
 namespace ps {
 namespace {
@@ -28,6 +29,78 @@ std::vector<Pose> random_poses(int count, unsigned seed) {
     poses.push_back(pose_at(0.8 * r(), 0.8 * r(), 0.8 * r(), r(), 0.5 * r()));
   }
   return poses;
+}
+
+/// A pair and its random number, as the search draws it.
+struct DrawnPair {
+  std::uint64_t draw;
+  std::size_t source, target;
+};
+
+bool comes_before(const DrawnPair& a, const DrawnPair& b) {
+  return std::tie(a.draw, a.source, a.target) < std::tie(b.draw, b.source, b.target);
+}
+
+/// Every pair in range of every two frames, in the order of their draws.
+std::vector<DrawnPair> all_drawn(const std::vector<Pose>& poses, const std::vector<int>& worlds,
+                                 const PairRange& range, std::uint64_t seed) {
+  std::vector<DrawnPair> all;
+  for (std::uint32_t i = 0; i < poses.size(); ++i) {
+    for (std::uint32_t k = 0; k < poses.size(); ++k) {
+      if (i == k || worlds[i] != worlds[k]) continue;
+      const Eigen::AngleAxisd turn(poses[i].linear().transpose() * poses[k].linear());
+      const double degrees = turn.angle() * 180 / M_PI;
+      const double metres = (poses[i].translation() - poses[k].translation()).norm();
+      if (degrees < range.least_rotation || degrees > range.most_rotation ||
+          metres > range.most_distance) {
+        continue;
+      }
+      const auto bits = random_bits(seed, {i, k, 0x70616972, 0});
+      all.push_back({static_cast<std::uint64_t>(bits[0]) << 32 | bits[1], i, k});
+    }
+  }
+  std::sort(all.begin(), all.end(), comes_before);
+  return all;
+}
+
+/// Takes pairs one at a time: of those whose source was taken least often, the first drawn.
+std::set<std::pair<std::size_t, std::size_t>> chosen_one_by_one(std::vector<DrawnPair> left,
+                                                                std::size_t most) {
+  std::set<std::pair<std::size_t, std::size_t>> chosen;
+  std::map<std::size_t, int> taken;
+  while (!left.empty() && chosen.size() < most) {
+    const auto next =
+        std::min_element(left.begin(), left.end(), [&](const DrawnPair& a, const DrawnPair& b) {
+          const int of_a = taken[a.source], of_b = taken[b.source];
+          return of_a != of_b ? of_a < of_b : comes_before(a, b);
+        });
+    chosen.emplace(next->source, next->target);
+    ++taken[next->source];
+    left.erase(next);
+  }
+  return chosen;
+}
+
+TEST(ChoosePairs, are_those_that_taking_one_after_another_of_all_gives) {
+  const std::vector<Pose> poses = random_poses(36, 6);
+  std::vector<int> one(poses.size(), 0), several(poses.size());
+  for (std::size_t i = 0; i < several.size(); ++i) several[i] = static_cast<int>(i % 5);
+  for (const std::vector<int>& worlds : {one, several}) {
+    for (const PairRange& range : {PairRange(), kWidePairs}) {
+      for (const std::uint64_t seed : {1u, 2u}) {
+        const std::vector<DrawnPair> all = all_drawn(poses, worlds, range, seed);
+        ASSERT_GT(all.size(), 10u);
+        for (const std::size_t most :
+             {std::size_t{1}, std::size_t{7}, std::size_t{50}, all.size() - 1, all.size()}) {
+          std::set<std::pair<std::size_t, std::size_t>> chosen;
+          for (const FramePair& pair : choose_pairs(poses, worlds, range, most, seed)) {
+            chosen.emplace(pair.source, pair.target);
+          }
+          EXPECT_EQ(chosen, chosen_one_by_one(all, most)) << most;
+        }
+      }
+    }
+  }
 }
 
 TEST(ChoosePairs, are_all_those_in_range_and_no_others) {
@@ -150,80 +223,6 @@ TEST(ChoosePairs, of_none_and_of_one_frame_are_none_and_unsound_ranges_throw) {
   EXPECT_THROW(choose_pairs(poses, {}, {0, 181, 1}, kAll), Error);
   EXPECT_THROW(choose_pairs(poses, {}, {0, 20, -1}, kAll), Error);
   EXPECT_THROW(choose_pairs(poses, {}, {std::nan(""), 20, 1}, kAll), Error);
-}
-
-/// Of the pixels whose surface is known, the share that is in the right mask.
-double right(const Visibility& found, const Mask& seen, const Depth& depth) {
-  const Mask known = depth > 0;
-  const Mask right = (found.visible & seen) | (found.invisible & (1 - seen));
-  return cv::countNonZero(right & known) / static_cast<double>(cv::countNonZero(known));
-}
-
-/// All but a pixel or two along the edges of things: the error halves with twice the pixels.
-TEST(TrueVisibility, is_what_rays_say) {
-  for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u}) {
-    const rooms::Room room(seed);
-    rooms::CameraOptions lens;
-    lens.width = 240, lens.height = 180;
-    const rooms::Camera a = rooms::random_camera(room, seed, lens);
-    const rooms::Camera b = rooms::moved(room, a, seed, 0.6f, 0.8f);
-    const View source = room_view(room, a);
-    const View target = room_view(room, b);
-    const std::vector<float> depth(target.depth.begin(), target.depth.end());
-    std::vector<std::uint8_t> rays = rooms::seen_from(room, a, b, depth);
-    const Mask seen(lens.height, lens.width, rays.data());
-    const double exact = right(true_visibility(source, target), seen, target.depth);
-    std::printf("  %.3f seen; right %.4f\n", cv::mean(seen)[0], exact);
-    EXPECT_GT(exact, 0.97);
-  }
-}
-
-TEST(TrueVisibility, of_a_view_by_itself_is_all_and_from_a_camera_turned_away_nothing) {
-  const Intrinsics k = intrinsics_from_fov(40, 30, 70);
-  const View view = box_world_view(k, pose_at(0, 0, -3, 0)),
-             back = box_world_view(k, pose_at(0, 0, -3, M_PI));
-  EXPECT_EQ(cv::countNonZero(true_visibility(view, view).visible), 1200);
-  EXPECT_EQ(cv::countNonZero(true_visibility(view, view).invisible), 0);
-  EXPECT_EQ(cv::countNonZero(true_visibility(back, view).visible), 0);
-  EXPECT_EQ(cv::countNonZero(true_visibility(back, view).invisible), 1200);
-}
-
-TEST(TrueVisibility, has_pixels_of_unknown_depth_in_neither_mask) {
-  const Intrinsics k = intrinsics_from_fov(40, 30, 70);
-  View source = box_world_view(k, pose_at(0, 0, -3, 0)), target = source;
-  target.depth(3, 5) = 0;
-  target.depth(3, 6) = std::nanf("");
-  source.depth(cv::Rect(10, 10, 5, 5)).setTo(-1);
-  source.depth(20, 20) = INFINITY;  // its neighbours are known
-  const Visibility found = true_visibility(source, target);
-  EXPECT_EQ(found.visible(3, 5) + found.invisible(3, 5), 0);
-  EXPECT_EQ(found.visible(3, 6) + found.invisible(3, 6), 0);
-  EXPECT_EQ(found.visible(12, 12) + found.invisible(12, 12), 0);
-  EXPECT_EQ(cv::countNonZero(found.invisible), 0);
-}
-
-TEST(TrueVisibility, takes_lenses_and_sizes_that_differ) {
-  const View source = box_world_view(intrinsics_from_fov(160, 120, 90), pose_at(0, 0, -3, 0)),
-             target = box_world_view({50, 70, 100, 90, 20, 40}, pose_at(0, 0, -3, 0));
-  const Visibility found = true_visibility(source, target);
-  EXPECT_EQ(found.visible.size(), target.depth.size());
-  EXPECT_GT(cv::countNonZero(found.visible), 3400);
-}
-
-TEST(TrueVisibility, of_one_pixel_works_and_unsound_views_throw) {
-  View one;
-  one.intrinsics = intrinsics_from_fov(1, 1, 60);
-  one.depth = Depth(1, 1, 2.f);
-  EXPECT_EQ(true_visibility(one, one).visible(0, 0), 1);
-  View cut = one;
-  cut.depth = Depth(1, 2, 2.f);
-  EXPECT_THROW(true_visibility(cut, one), Error);
-  EXPECT_THROW(true_visibility(one, cut), Error);
-  View blind = one;
-  blind.depth.release();
-  EXPECT_THROW(true_visibility(blind, one), Error);
-  EXPECT_THROW(true_visibility(one, blind), Error);
-  EXPECT_THROW(true_visibility(one, View()), Error);
 }
 
 }  // namespace

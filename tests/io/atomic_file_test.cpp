@@ -123,6 +123,74 @@ TEST(AtomicFiles, leave_what_was_there_when_one_cannot_be_put_in_place) {
   EXPECT_EQ(folder.entries(), 3);
 }
 
+TEST(AtomicFiles, made_inside_others_join_them) {
+  const Folder folder;
+  put(folder / "b.txt", "old");
+  put(folder / "stale.txt", "old");
+  {
+    AtomicFiles outer;
+    put_atomic(folder / "a.txt", "a");
+    bool called = false;
+    {
+      AtomicFiles inner;
+      put_atomic(folder / "b.txt", "b");
+      inner.remove(folder / "stale.txt");
+      inner.commit([&] { called = true; });
+    }
+    EXPECT_FALSE(called);
+    EXPECT_EQ(bytes_of(folder / "b.txt"), "old");
+    { AtomicFiles().remove(folder / "a.txt"); }  // not committed: forgotten
+    put_atomic(folder / "c.txt", "c");
+    outer.commit();
+    EXPECT_TRUE(called);
+  }
+  EXPECT_EQ(bytes_of(folder / "a.txt"), "a");
+  EXPECT_EQ(bytes_of(folder / "b.txt"), "b");
+  EXPECT_EQ(bytes_of(folder / "c.txt"), "c");
+  EXPECT_EQ(folder.entries(), 3);
+}
+
+TEST(AtomicFiles, that_joined_others_go_with_them) {
+  const Folder folder;
+  put(folder / "a.txt", "old");
+  {
+    AtomicFiles outer;
+    AtomicFiles inner;
+    put_atomic(folder / "a.txt", "a");
+    put_atomic(folder / "b.txt", "b");
+    inner.commit();
+    EXPECT_EQ(folder.entries(), 3);
+  }
+  EXPECT_EQ(bytes_of(folder / "a.txt"), "old");
+  EXPECT_EQ(folder.entries(), 1);
+}
+
+TEST(AtomicFiles, are_taken_back_when_what_comes_last_throws) {
+  const Folder folder;
+  put(folder / "a.txt", "old");
+  {
+    AtomicFiles files;
+    put_atomic(folder / "a.txt", "a");
+    put_atomic(folder / "b.txt", "b");
+    const auto last = [&] {
+      EXPECT_EQ(bytes_of(folder / "a.txt"), "a");
+      throw Error("last", "failed");
+    };
+    EXPECT_EQ(error_of([&] { files.commit(last); }), "last: failed");
+  }
+  EXPECT_EQ(bytes_of(folder / "a.txt"), "old");
+  EXPECT_EQ(folder.entries(), 1);
+}
+
+TEST(AtomicFile, says_why_there_is_no_room) {
+  const Folder folder;
+  AtomicFile file(folder / "a.txt");
+  file.write("text");
+  file.check_room(100);
+  const auto message = error_of([&] { file.check_room(std::size_t{1} << 62); });
+  EXPECT_TRUE(has(message, "a.txt: writing failed: File too large")) << message;
+}
+
 TEST(LineReader, counts_lines_of_either_ending_and_skips_the_byte_order_mark) {
   LineReader lines("\xEF\xBB\xBF one\r\n\n# two\n three", "f");
   std::string_view line;

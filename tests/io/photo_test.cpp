@@ -180,6 +180,22 @@ TEST(Photo, focal_lengths_that_cannot_be_are_left_out) {
   EXPECT_FALSE(parse_photo(with_exif(encoded(".jpg", corner()), cut), "a.jpg").focal_px);
 }
 
+TEST(Photo, focal_lengths_that_are_no_help_are_told) {
+  const auto doubt = [](const std::string& block) {
+    return parse_photo(with_exif(encoded(".jpg", corner()), block), "a.jpg").focal_doubt;
+  };
+  const auto millimetres = [](std::uint32_t tenths) {
+    return exif_block(1, {tag(0x920A, 5, 38 + 2 + 12 + 4)}, {{tenths, 10}});
+  };
+  EXPECT_EQ(doubt(exif_block(1, {}, {})), "");
+  EXPECT_EQ(doubt(exif_block(1, {tag(0xA405, 3, 28)}, {})), "");
+  EXPECT_EQ(doubt(exif_block(1, {tag(0xA405, 3, 9999)}, {})),
+            "a focal length of 9999 mm for 35 mm film, which cannot be");
+  EXPECT_EQ(doubt(millimetres(1)), "a focal length of 0.1 mm, which cannot be");
+  EXPECT_EQ(doubt(millimetres(100000)), "a focal length of 10000 mm, which cannot be");
+  EXPECT_EQ(doubt(millimetres(42)), "a focal length of 4.2 mm but not how large the sensor is");
+}
+
 TEST(Photo, every_truncation_is_an_error) {
   cv::Mat3b image(40, 56);
   cv::randu(image, 0, 256);

@@ -51,13 +51,7 @@ class OutpainterOfRandomWeights : public testing::Test {
   /// What the sampler is given: codes of the projection with the nearest colours where it is
   /// missing.
   std::vector<std::int32_t> known_codes() {
-    const cv::Mat1i nearest = nearest_seen(background_);
-    nn::Tensor whole(projection_.shape());
-    for (std::size_t i = 0; i < nearest.total(); ++i) {
-      std::copy_n(projection_.view().pixel(static_cast<std::size_t>(nearest.ptr<int>()[i])), 3,
-                  whole.view().pixel(i));
-    }
-    return codes_of(whole);
+    return codes_of(with_nearest_colors(projection_.view(), background_));
   }
   std::vector<std::int32_t> codes_of(const nn::Tensor& image) {
     std::vector<std::int32_t> codes(kHeight / 8 * kWidth / 8);

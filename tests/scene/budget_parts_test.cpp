@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <set>
 
 #include "libps/core/random.h"
+#include "libps/scene/cell_table.h"
 #include "libps/scene/merge.h"
 #include "libps/scene/sample.h"
 #include "tests/support/box_world.h"
@@ -103,11 +105,37 @@ TEST(SampleGrid, lists_all_neighbours_that_a_loop_over_all_samples_finds) {
   EXPECT_GT(cells, 100u);
 }
 
+TEST(CellTable, finds_the_cells_around_that_a_loop_over_all_finds) {
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> place(-6, 5), grid(0, 1);
+  CellTable table;
+  std::vector<CellTable::Key> keys;
+  for (int i = 0; i < 900; ++i) {
+    const CellTable::Key key = {place(random), place(random), place(random), 256 * grid(random)};
+    const auto known = std::find(keys.begin(), keys.end(), key);
+    const auto number = static_cast<std::uint32_t>(known - keys.begin());
+    if (known == keys.end()) keys.push_back(key);
+    ASSERT_EQ(table.find_or_add(key), number);
+  }
+  EXPECT_EQ(table.keys(), keys);
+  for (const CellTable::Key& key : keys) {
+    const CellTable::Around around = table.around(key);
+    for (int i = 0; i < 27; ++i) {
+      const CellTable::Key there = {key[0] + i % 3 - 1, key[1] + i / 3 % 3 - 1, key[2] + i / 9 - 1,
+                                    key[3]};
+      const auto known = std::find(keys.begin(), keys.end(), there);
+      const auto number = static_cast<std::uint32_t>(known - keys.begin());
+      EXPECT_EQ(around[static_cast<std::size_t>(i)],
+                known == keys.end() ? CellTable::kNone : number);
+    }
+  }
+}
+
 TEST(SampleGrid, blocks_go_over_every_cell_once) {
   const std::vector<Sample> samples = random_samples(8000);
   const SampleGrid grid(samples, 1);
   std::vector<int> visits(grid.cells(), 0);
-  grid.for_each_block([&](const std::vector<std::uint32_t>& cells) {
+  grid.for_each_block([&](const SampleGrid::Span& cells) {
     for (const std::uint32_t cell : cells) ++visits[cell];
   });
   EXPECT_EQ(std::count(visits.begin(), visits.end(), 1), static_cast<int>(grid.cells()));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 
@@ -167,6 +168,44 @@ TEST(Budget, huge_tiny_and_distant_places_are_thinned_alike) {
   for (Point& p : far) p.getVector3fMap() += there.translation().cast<float>();
   const auto count = static_cast<double>(thinned(far, {{kCamera, there}}).size());
   EXPECT_NEAR(count / static_cast<double>(usual), 1, 0.05);
+}
+
+TEST(Budget, progress_rises_to_one_in_small_steps_whatever_the_target) {
+  const Cloud whole = picture_cloud(half_and_half, two_metres);
+  BudgetOptions few, alike, beyond;
+  few.points = whole.size() / 300;
+  alike.psnr = 38;
+  beyond.psnr = 300;
+  for (BudgetOptions options : {BudgetOptions(), few, alike, beyond}) {
+    std::vector<double> told = {0};
+    options.progress = [&](double done) { told.push_back(done); };
+    thinned(whole, kFront, options);
+    EXPECT_EQ(told.back(), 1);
+    EXPECT_GT(told.size(), 100u);
+    for (std::size_t i = 1; i < told.size(); ++i) {
+      EXPECT_GE(told[i], told[i - 1]);
+      EXPECT_LT(told[i] - told[i - 1], 0.3);
+    }
+  }
+}
+
+TEST(Budget, stops_where_its_progress_throws) {
+  const Cloud whole = picture_cloud(half_and_half, two_metres);
+  BudgetOptions options;
+  options.points = whole.size() / 300;
+  for (const double last : {0.0, 0.05, 0.2, 0.4, 0.7, 0.95}) {
+    double told = 0;
+    std::atomic<int> after{0};
+    options.progress = [&](double done) {
+      told = done;
+      if (done < last) return;
+      ++after;
+      throw Error("progress", "stop");
+    };
+    EXPECT_THROW(thinned(whole, kFront, options), Error) << last;
+    EXPECT_GE(told, last);
+    EXPECT_LE(after, 64) << last;  // each thread once
+  }
 }
 
 TEST(Budget, bytes_do_not_depend_on_threads) {
