@@ -71,9 +71,8 @@ Thinner::Thinner(const std::vector<Sample>& samples, const BudgetOptions& option
       spacing_(static_cast<float>(options.spacing) * radius_),
       samples_(without_crowds(samples, pixels_, meter)),
       grid_(begin_look(samples_, meter), std::max(radius_, pixels_), meter),
-      surroundings_(look_around(samples_, grid_,
-                                {radius_, std::min(radius_, kFinestSplat), spacing_, pixels_},
-                                meter)) {
+      surroundings_(look_around(
+          samples_, grid_, {radius_, std::min(radius_, kFinestSplat), spacing_, pixels_}, meter)) {
   for (std::size_t i = 0; i < samples_.size(); ++i) samples_[i].clear = surroundings_[i].clear;
 }
 

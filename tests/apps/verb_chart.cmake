@@ -12,13 +12,13 @@ app_test(chart_writes_tables_pictures_and_a_page [=[
   done
   is "$(size_of c/chart.png)" = 2160x720
   is "$(ls c | wc -l)" -eq 10
-  is "$(grep -c '^radius,' c/chart.csv)" -eq 8
+  is "$(grep -c '^radius,' c/chart.csv)" -eq 10
   grep -q '"processor": ' c/chart.json
   grep -q '"seed": 0' c/chart.json
   head -n 1 c/index.html | grep -q '^<!doctype html>'
-  is "$(grep -o 'data:image/jpeg;base64' c/index.html | wc -l)" -eq $((8 + 5 + 2 * 2))
+  is "$(grep -o 'data:image/jpeg;base64' c/index.html | wc -l)" -eq $((10 + 5 + 2 * 2))
   is "$(grep -Eoc '(src|href)=.?(http|//|file)' c/index.html)" -eq 0
-  for s in 1 2 3 4 5 6 7 8; do
+  for s in 1 2 3 4 5 6 7 8 9 10; do
     is "$(grep -c "href=\"#radius-$s\"" c/index.html)" -eq 1
     is "$(grep -c "id=\"radius-$s\"" c/index.html)" -eq 1
   done
