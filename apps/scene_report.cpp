@@ -14,7 +14,8 @@ void append_names(const Json& entries, const char* key, const std::string& befor
   for (const Json& entry : entries) {
     if (!entry.is_object() || !entry.contains(key) || !entry[key].is_string()) continue;
     const auto name = entry[key].get<std::string>();
-    if (name.find('/') == std::string::npos) names->push_back(before + name + after);
+    // A '#' would be taken for a number.
+    if (name.find_first_of("/#") == std::string::npos) names->push_back(before + name + after);
   }
 }
 

@@ -67,12 +67,14 @@ void add_path_options(CLI::App& verb, RenderArguments& a) {
 }
 
 void add_picture_options(CLI::App& verb, RenderArguments& a) {
-  verb.add_option("--radius", a.splat.radius, "Radius of the widest splats in pixels")
+  verb.add_option("--radius", a.splat.radius,
+                  "Radius of the widest splats, and of gaps that are closed, in pixels")
       ->type_name("PX")
       ->check(in_range(0.01, 64));
-  verb.add_option("--finest", a.finest,
-                  "Radius of the narrowest splats in pixels, whose gaps wider ones close; at least "
-                  "--radius: all alike, as published")
+  verb.add_option(
+          "--finest", a.finest,
+          "Radius of the narrowest splats in pixels: others are as wide as their points stand "
+          "for, and gaps are closed from beside; at least --radius: all alike, as published")
       ->type_name("PX")
       ->check(in_range(0.01, 64));
   verb.add_option("--points-per-pixel", a.splat.points_per_pixel,

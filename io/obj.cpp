@@ -194,9 +194,9 @@ void Reader::cut(const std::vector<Mask>& opaque) {
     }
     return seen < 0;
   };
-  auto& triangles = model.triangles;
-  triangles.erase(std::remove_if(triangles.begin(), triangles.end(), gone), triangles.end());
-  if (triangles.empty()) throw Error(name, "all of it is transparent", "a triangle that is seen");
+  auto& all = model.triangles;
+  all.erase(std::remove_if(all.begin(), all.end(), gone), all.end());
+  if (all.empty()) throw Error(name, "all of it is transparent", "a triangle that is seen");
 }
 
 }  // namespace

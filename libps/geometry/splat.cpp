@@ -21,6 +21,8 @@ using splat_kernel::TilePoint;
 
 constexpr int kLargest = 16384;  ///< pixels on a side
 constexpr int kBatch = 32;
+/// Of splats that hide what is behind them: by their faint rim they would hide pixels' own points.
+constexpr float kReach = 0.9f;
 /// What is behind a transmittance this small changes an 8-bit colour by less than half a step.
 constexpr float kEnough = 1.0f / 512;
 
@@ -44,8 +46,8 @@ void check(const SplatOptions& o, cv::Size size) {
     throw Error("splat radius", std::to_string(o.radius), "more than 0 and at most 64 pixels");
   }
   if (!(o.finest >= 0)) throw Error("finest splat", std::to_string(o.finest), "0 pixels or more");
-  if (!(o.footprints >= 0)) {
-    throw Error("splat footprints", std::to_string(o.footprints), "0 or more");
+  if (!(o.thickness >= 0)) {
+    throw Error("splat thickness", std::to_string(o.thickness), "0 or more");
   }
   if (!(o.near >= 0)) throw Error("splat near", std::to_string(o.near), "at least 0");
   if (o.points_per_pixel < 1) {
@@ -93,7 +95,7 @@ class Painter {
     const int x0 = index % bins_.columns * kTile, y0 = index / bins_.columns * kTile;
     const splat_kernel::Params params = {static_cast<float>(x0), static_cast<float>(y0),
                                          options_.count_hits ? 0 : kEnough,
-                                         options_.points_per_pixel};
+                                         options_.points_per_pixel, 1 + options_.thickness};
     entries.start(bins_.entries.data() + bins_.start[index],
                   bins_.entries.data() + bins_.start[index + 1]);
     std::array<TilePoint, kBatch> batch;
@@ -113,7 +115,7 @@ class Painter {
   TilePoint tile_point(std::size_t i, const ColorOf& color_of) const {
     const cv::Vec3f c = color_of(i);
     const float r = points_.radius.empty() ? options_.radius : points_.radius[i];
-    return {points_.u[i], points_.v[i], points_.z[i], c[0], c[1], c[2], r, 1 / (r * r)};
+    return {points_.u[i], points_.v[i], points_.z[i], c[0], c[1], c[2], r * reach_, 1 / (r * r)};
   }
 
   void list_nearest(const std::uint64_t* entries, const TilePoint* points, int count, int x0,
@@ -165,6 +167,7 @@ class Painter {
   TileBins bins_;
   Splat result_;
   const splat_kernel::Blend blend_ = pick_blend();
+  const float reach_ = std::isfinite(options_.thickness) ? kReach : 1;  ///< of a hit, in radii
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -21,10 +22,13 @@ namespace ps {
 /// Wiles et al., SynSin, CVPR 2020).
 struct SplatOptions {
   float radius = 4;  ///< pixels, at any image size; a hit is closer than this
-  /// Pixels; above 0, each point has its own radius: `footprints` times what its footprint covers
-  /// where it is drawn, at least this and at most `radius`.
+  /// Pixels; above 0, each point has its own radius: what its footprint covers where it is drawn,
+  /// at least this and at most `radius`. So the camera that saw points sees them as they were.
   float finest = 0;
-  float footprints = 1;        ///< so, the camera that saw points sees them as they were
+  /// Share of the depth of a pixel's first hit; what is farther behind it is hidden, and no hit.
+  /// Else narrow splats, which are thin where they end, let what is behind a surface shine through.
+  /// If finite, hits are within nine tenths of the radius.
+  float thickness = std::numeric_limits<float>::infinity();
   int points_per_pixel = 128;  ///< only the nearest so many hits of a pixel count
   int dilation = 13;           ///< side of the square that widens the missing mask; odd; 1 = none
   float near = 1e-3f;          ///< metres; points at or before this depth are skipped
@@ -87,7 +91,7 @@ struct PlanePoints {
 /// @brief Splats a cloud into a camera. Points that are not finite are skipped.
 /// The result does not depend on the number of threads or on the machine's vector width.
 /// Throws ps::Error when the camera, the pose or an option is unsound: sides up to 16384 pixels,
-/// radius in (0, 64], finest and footprints at least 0, dilation odd, near at least 0.
+/// radius in (0, 64], finest and thickness at least 0, dilation odd, near at least 0.
 Splat splat(const PointsView& points, const Intrinsics& intrinsics, const Pose& world_from_cam,
             const SplatOptions& options = {});
 
@@ -97,7 +101,8 @@ Splat splat(const pcl::PointCloud<PointT>& cloud, const Intrinsics& intrinsics,
   return splat(points_view(cloud), intrinsics, world_from_cam, options);
 }
 
-/// @brief Splats points that are already in the image plane. Hits are ordered by (depth, index).
+/// @brief Splats points that are already in the image plane, all of options.radius. Hits are
+/// ordered by (depth, index).
 Splat splat_plane(const PlanePoints& points, cv::Size size, const SplatOptions& options = {});
 
 }  // namespace ps

@@ -58,13 +58,14 @@ class TileRanges {
   float radius_;
 };
 
-/// Pixels; `at_one` is how many a metre of footprint gets, a metre away.
-float radius_of(const PointsView& points, std::size_t i, float at_one, float z,
+/// @param focal  pixels
+/// @return pixels
+float radius_of(const PointsView& points, std::size_t i, float focal, float z,
                 const SplatOptions& options) {
   if (points.footprint == 0) return options.finest;
   float footprint;
   std::memcpy(&footprint, points.data + i * points.stride + points.footprint, sizeof footprint);
-  const float wanted = at_one * footprint / z;
+  const float wanted = focal * footprint / z;
   // Also what is no number is drawn as fine as may be.
   return wanted > options.finest ? std::min(wanted, options.radius) : options.finest;
 }
@@ -87,7 +88,7 @@ PlaneArrays project_points(const PointsView& points, const Intrinsics& k,
   plane.z.resize(points.count);
   const bool own_radii = options.finest > 0 && options.finest < options.radius;
   if (own_radii) plane.radius.resize(points.count);
-  const float at_one = options.footprints * std::sqrt(fx * fy);
+  const float focal = std::sqrt(fx * fy);
   parallel_chunks(points.count, kChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       float p[3];
@@ -101,7 +102,7 @@ PlaneArrays project_points(const PointsView& points, const Intrinsics& k,
       plane.u[i] = u;
       plane.v[i] = v;
       plane.z[i] = drawn ? z : 0;
-      if (own_radii) plane.radius[i] = radius_of(points, i, at_one, z, options);
+      if (own_radii) plane.radius[i] = radius_of(points, i, focal, z, options);
     }
   });
   return plane;

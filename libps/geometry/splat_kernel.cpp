@@ -100,8 +100,10 @@ inline void blend_block(Gathered* block, int at, TilePoint p, Floats d2, Params 
   Floats& left = floats(block->left + at);
   Ints& count = ints(block->count + at);
   const Lanes inside = less(d2, all(p.radius * p.radius));
-  const Lanes hit =
-      inside & ~less(left, all(params.enough)) & less(count, Ints{} + params.most_hits);
+  const Lanes of_surface =
+      is_zero(count) | less(all(p.z), floats(block->first + at) * params.deepest);
+  const Lanes hit = inside & of_surface & ~less(left, all(params.enough)) &
+                    less(count, Ints{} + params.most_hits);
   // Wide blocks are mostly hit, and a branch that is hard to foretell costs more than the sums.
   if (kLanes < 16 && !any(hit)) return;
   const Floats share = d2 * p.inverse_r2;

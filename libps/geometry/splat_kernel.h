@@ -21,7 +21,7 @@ constexpr int pixel_index(int x, int y) {
 struct TilePoint {
   float u, v, z;
   float r, g, b;
-  float radius;  ///< pixels
+  float radius;  ///< pixels, within which it hits
   float inverse_r2;
 };
 
@@ -47,6 +47,7 @@ struct Params {
   float x0, y0;       ///< pixel of the tile's corner
   float enough;       ///< a pixel is done when `left` is below this
   int32_t most_hits;  ///< ... or when it has this many
+  float deepest;      ///< no hit is so many times as deep as the first
 };
 
 /// Blends points, nearest first, over a tile. Returns whether a pixel is left that can change.

@@ -37,7 +37,7 @@ struct BudgetOptions {
   float radius = 4;          ///< of the widest splats, pixels (closed_splat.h)
   bool drop_unseen = false;  ///< leave out what no planned view can see
   /// Told what share is done, from 0 to 1 and never falling; of searches for a target that is an
-  /// estimate. One call at a time, from any thread, several in a second. What it throws comes out
+  /// estimate. One call at a time, from any thread, very often. What it throws comes out
   /// of thinned().
   std::function<void(double done)> progress = {};
 };
@@ -58,9 +58,10 @@ struct BudgetReport {
 /// @brief Thins an accumulated cloud (PixelSynth section 3.2) to what planned views need.
 ///
 /// A point that stays speaks for others around it: it keeps its place, view and origin, takes the
-/// mean of their colours, and its footprint grows until splats of it cover all their area. It
-/// reaches as far as the surface is flat, to within `pixels`, and of one colour; points where a
-/// surface ends, or that lie on none, speak for themselves. So outlines, edges and texture stay.
+/// mean of their colours, and its footprint grows until splats of it cover all their area, though
+/// not beyond the end of its surface. It reaches as far as the surface is flat, to within `pixels`,
+/// and of one colour; points where a surface ends, or that lie on none, speak for themselves. So
+/// outlines, edges and texture stay.
 /// Observed and outpainted points are never merged with each other, nor are two surfaces, unless
 /// they are less than four times `pixels` apart or a target of very few points asks for it.
 ///

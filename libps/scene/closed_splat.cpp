@@ -17,6 +17,21 @@ constexpr float kNearer = 1.05f;  ///< in inverse depth; of what is another surf
 /// would fill the corners of rooms.
 constexpr float kSeenThrough = 4;
 
+/// Inverse depth with what is seen through holes of one or two pixels closed, but no slits: closed
+/// along lines of each of four directions, the least of these.
+cv::Mat1f closed_pinholes(const cv::Mat1f& inverse) {
+  const cv::Mat1b across = cv::Mat1b::ones(1, 3), down = cv::Mat1b::ones(3, 1),
+                  falling = cv::Mat1b::eye(3, 3);
+  cv::Mat1b rising;
+  cv::flip(falling, rising, 1);
+  cv::Mat1f least, closed;
+  for (const cv::Mat1b& line : {across, down, falling, rising}) {
+    cv::morphologyEx(inverse, closed, cv::MORPH_CLOSE, line);
+    least = least.empty() ? closed.clone() : cv::Mat1f(cv::min(least, closed));
+  }
+  return least;
+}
+
 /// Inverse depth of the surfaces around gaps that are at most so wide, in these gaps; else 0.
 cv::Mat1f closed_depth(const cv::Mat1f& inverse, const Mask& hit, float radius) {
   const int side = 2 * static_cast<int>(std::ceil(radius)) + 1;
@@ -33,6 +48,7 @@ cv::Mat1f closed_depth(const cv::Mat1f& inverse, const Mask& hit, float radius) 
   cv::morphologyEx(inverse, opened, cv::MORPH_OPEN, cv::Mat::ones(3, 3, CV_8U));
   apart.setTo(0, inverse <= kNearer * opened);
   cv::morphologyEx(apart, closed_apart, cv::MORPH_CLOSE, square);
+  closed_apart = cv::max(closed_apart, closed_pinholes(inverse));
   closed_apart.copyTo(closed, hit);
   closed.setTo(0, closed <= kNearer * inverse);
   return closed;
@@ -48,21 +64,23 @@ class GapFiller {
   void fill(const cv::Mat1f& closed) {
     std::vector<cv::Point> gaps;
     cv::findNonZero(closed > 0, gaps);
-    std::vector<Pixel> ring;
-    do {
-      ring.clear();
+    bool any = false;  // else only of the surface itself
+    while (!gaps.empty()) {
+      std::vector<Pixel> ring;
       std::vector<cv::Point> left;
       for (const cv::Point& gap : gaps) {
-        const Pixel pixel = mean_around(gap, closed(gap));
+        const Pixel pixel = mean_around(gap, closed(gap), any);
         if (pixel.weight > 0) {
           ring.push_back(pixel);
         } else {
           left.push_back(gap);
         }
       }
+      if (ring.empty() && any) return;
+      any = ring.empty();
       for (const Pixel& pixel : ring) take(pixel);
       gaps.swap(left);
-    } while (!ring.empty());
+    }
   }
 
  private:
@@ -81,21 +99,22 @@ class GapFiller {
     }
   };
 
-  /// Of the pixels around it that show the surface; of any, where only they can be told from
-  /// nothing.
-  Pixel mean_around(const cv::Point& at, float surface) const {
-    Pixel of_surface, of_any;
-    of_surface.at = of_any.at = at;
+  /// Of the pixels around it that show the surface.
+  /// @param any  whatever they show, if nothing is shown there
+  Pixel mean_around(const cv::Point& at, float surface, bool any) const {
+    const float least = any && !shown_.hit(at) ? 0 : surface / kNearer;
+    Pixel pixel;
+    pixel.at = at;
     for (int dy = -1; dy <= 1; ++dy) {
       for (int dx = -1; dx <= 1; ++dx) {
         const cv::Point other(at.x + dx, at.y + dy);
         if (!cv::Rect({}, inverse_.size()).contains(other) || !shown_.hit(other)) continue;
-        const float share = dx != 0 && dy != 0 ? .5f : 1.f, inverse = inverse_(other);
-        Pixel& pixel = inverse * kNearer < surface ? of_any : of_surface;
-        pixel.add(share, shown_.color(other), inverse, shown_.expected_depth(other));
+        if (inverse_(other) < least) continue;
+        const float share = dx != 0 && dy != 0 ? .5f : 1.f;
+        pixel.add(share, shown_.color(other), inverse_(other), shown_.expected_depth(other));
       }
     }
-    return of_surface.weight > 0 || shown_.hit(at) ? of_surface : of_any;
+    return pixel;
   }
 
   void take(const Pixel& pixel) {
@@ -117,13 +136,16 @@ Splat closed_splat(const PointsView& points, const Intrinsics& intrinsics,
   if (!(finest > 0)) throw Error("finest splat", std::to_string(finest), "above 0 pixels");
   SplatOptions level = options;
   level.finest = std::min(options.radius, finest);
+  if (level.finest < options.radius) level.thickness = kNearer - 1;
   Splat shown = splat(points, intrinsics, world_from_cam, level);
   if (level.finest == options.radius) return shown;
   cv::Mat1f inverse = 1 / shown.first_depth;
   inverse.setTo(0, shown.hit == 0);
   GapFiller filler(&shown, &inverse);
   for (float radius = level.finest; radius < options.radius;) {
-    radius = std::min(2 * radius, options.radius);
+    // Whatever the finest is, kSeenThrough is one of the levels.
+    const float next = radius < kSeenThrough ? std::min(2 * radius, kSeenThrough) : 2 * radius;
+    radius = std::min(next, options.radius);
     filler.fill(closed_depth(inverse, shown.hit, radius));
   }
   cv::dilate(shown.hit == 0, shown.missing, cv::Mat1b(options.dilation, options.dilation, 1));

@@ -90,8 +90,8 @@ Knob splat_knob(Knob knob, const std::vector<Drawing>& drawings) {
 
 Knob radius_knob() {
   Knob knob = {"radius",
-               "Radius of splats, pixels, and where two are told, of the narrowest, whose gaps "
-               "wider ones close: the view that was left out, from a fused cloud."};
+               "Radius of splats, pixels; where two are told, from the narrowest to the widest, as "
+               "footprints are, gaps closed: the view that was left out, from a fused cloud."};
   std::vector<Drawing> drawings;
   const auto add = [&](const std::string& name, float finest, float radius) {
     Drawing drawing;

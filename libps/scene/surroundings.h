@@ -13,7 +13,8 @@ namespace ps {
 
 /// @brief For each step of distance from a sample, the greatest difference between the colours that
 /// splats show at it and at any sample up to there: 0 to 254, or kApart where the surface bends.
-/// All kApart for a sample where a surface ends, or that is on none, and no difference counts to it.
+/// All kApart for a sample where a surface ends, or that is on none; differences to it do not
+/// count.
 struct Surroundings {
   static constexpr int kSteps = 8;
   static constexpr std::uint8_t kApart = 255;

@@ -20,7 +20,9 @@ namespace ps {
 struct Point;
 
 struct ViewRendererOptions {
-  SplatOptions splat;           ///< what the refiner is given, its background then set to grey
+  /// What the refiner is given, its background then set to grey; its radius is also that of the
+  /// widest splats that show the cloud.
+  SplatOptions splat;
   float finest = kFinestSplat;  ///< pixels of the view; of the splats that show the cloud
   bool as_published = false;    ///< the refiner's picture alone
   std::uint64_t seed = 0;       ///< of the refiner's noise, which is the same for all views
@@ -32,8 +34,8 @@ struct RenderedView {
   double missing_share = 0;  ///< of its pixels: what the refiner alone had to fill in
 };
 
-/// @brief What of a view the cloud itself shows: `splat`, and its colours. Throws ps::Error when
-/// lens or pose are unsound.
+/// @brief What of a view the cloud itself shows: `splat`, and `color`, which is its own. Throws
+/// ps::Error when lens or pose are unsound.
 RenderedView cloud_picture(const pcl::PointCloud<Point>& cloud, const Intrinsics& lens,
                            const Pose& world_from_cam, const ViewRendererOptions& options = {});
 

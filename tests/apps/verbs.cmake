@@ -117,6 +117,13 @@ app_test(settings_hold_every_option_and_the_seed [=[
   for key in '"seed": 7' '"version"' '"every": 2' '"edge-footprints"' '"depth-scale": 1000'; do
     grep -q "$key" a.settings.json || complain "$key is missing"
   done]=])
+app_test(render_shows_points_as_wide_as_they_stand_for [=[
+  works fuse $S/walk -o a.ply --spacing 0.05
+  works render a.ply -o fine.png
+  works render a.ply -o wide.png --finest 4
+  works render a.ply -o wider.png --finest 64
+  cmp wide.png wider.png || complain 'splats wider than --radius'
+  if cmp -s fine.png wide.png; then complain '--finest does nothing'; fi]=])
 app_test(render_writes_frames_poses_and_lens_into_a_folder [=[
   works fuse $S/walk -o a.ply
   works render a.ply -o r --trajectory sway --frames 5 --depth

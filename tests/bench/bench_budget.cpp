@@ -65,6 +65,7 @@ Cloud voxel_grid(const Cloud& cloud, double leaf) {
     p.r = static_cast<std::uint8_t>(std::lround(mean[3]));
     p.g = static_cast<std::uint8_t>(std::lround(mean[4]));
     p.b = static_cast<std::uint8_t>(std::lround(mean[5]));
+    p.footprint = 1.5f * static_cast<float>(leaf);  // as wide as no gaps are left
     result.push_back(p);
   }
   return result;

@@ -111,17 +111,41 @@ TEST(Splat, every_vector_width_gives_the_same_bytes) {
     p = {unit(random) * 24 + 28, unit(random) * 24 + 44, 1 + unit(random), unit(random),
          unit(random),           unit(random),           radius,           1 / (radius * radius)};
   }
-  const Params params = {32, 48, 1.0f / 1024, 100};
-  std::vector<Tile> tiles(widths.size(), Tile{});
-  for (std::size_t w = 0; w < widths.size(); ++w) {
-    for (Gathered& block : tiles[w].blocks) {
-      for (float& left : block.left) left = 1;
+  for (const float deepest : {std::numeric_limits<float>::infinity(), 1.2f}) {
+    const Params params = {32, 48, 1.0f / 1024, 100, deepest};
+    std::vector<Tile> tiles(widths.size(), Tile{});
+    for (std::size_t w = 0; w < widths.size(); ++w) {
+      for (Gathered& block : tiles[w].blocks) {
+        for (float& left : block.left) left = 1;
+      }
+      tiles[w].live = ~std::uint64_t{0};
+      for (int i = 0; i < 700; i += 20) widths[w](&tiles[w], points.data() + i, 20, params);
+      EXPECT_EQ(std::memcmp(tiles[w].blocks, tiles[0].blocks, sizeof tiles[0].blocks), 0);
+      EXPECT_GT(tiles[w].blocks[5].count[3], 0);
     }
-    tiles[w].live = ~std::uint64_t{0};
-    for (int i = 0; i < 700; i += 20) widths[w](&tiles[w], points.data() + i, 20, params);
-    EXPECT_EQ(std::memcmp(tiles[w].blocks, tiles[0].blocks, sizeof tiles[0].blocks), 0);
-    EXPECT_GT(tiles[w].blocks[5].count[3], 0);
   }
+}
+
+TEST(Splat, what_is_behind_a_surface_can_be_hidden) {
+  PlanePoints points;
+  const auto add = [&](float z, const cv::Vec3f& color) {
+    points.u.push_back(8.5f);
+    points.v.push_back(8);
+    points.z.push_back(z);
+    points.color.push_back(color);
+  };
+  add(2.2f, {0, 0, 1});
+  add(1, {1, 0, 0});
+  add(1.04f, {0, 1, 0});
+  SplatOptions options;
+  options.radius = 1;
+  const Splat open = splat_plane(points, {16, 16}, options);
+  EXPECT_GT(open.color(8, 8)[2], .1f);
+  options.thickness = .05f;
+  const Splat hidden = splat_plane(points, {16, 16}, options);
+  EXPECT_EQ(hidden.color(8, 8)[2], 0);
+  EXPECT_GT(hidden.color(8, 8)[1], .1f);
+  EXPECT_LT(hidden.expected_depth(8, 8), 1.04f);
 }
 
 TEST(Splat, points_may_have_radii_of_their_footprints) {
@@ -134,7 +158,7 @@ TEST(Splat, points_may_have_radii_of_their_footprints) {
     p.z = 1 + 2 * unit(random);
     p.x = (unit(random) - .5f) * .9f * p.z;
     p.y = (unit(random) - .5f) * .5f * p.z;
-    p.footprint = .12f * unit(random) * unit(random);
+    p.footprint = .24f * unit(random) * unit(random);
     cloud.push_back(p);
   }
   cloud[3].footprint = 0;
@@ -142,14 +166,13 @@ TEST(Splat, points_may_have_radii_of_their_footprints) {
   SplatOptions options;
   options.radius = 5;
   options.finest = 1.5f;
-  options.footprints = 2;
   const Splat drawn = splat(cloud, camera, Pose::Identity(), options);
   int widest = 0, narrowest = 0;
   for (int y = 0; y < camera.height; ++y) {
     for (int x = 0; x < camera.width; ++x) {
       float nearest = 0;
       for (const Point& p : cloud) {
-        const float wanted = 2 * p.footprint * 100 / p.z;
+        const float wanted = p.footprint * 100 / p.z;
         const float radius = wanted > 1.5f ? std::min(wanted, 5.f) : 1.5f;
         const float u = 100 * p.x / p.z + 44.5f, v = 100 * p.y / p.z + 24.5f;
         const float dx = static_cast<float>(x) - u, dy = static_cast<float>(y) - v;
@@ -251,7 +274,7 @@ TEST(Splat, unsound_options_are_refused) {
   EXPECT_THROW(with([](SplatOptions& o) { o.radius = 65; }), Error);
   EXPECT_THROW(with([](SplatOptions& o) { o.finest = -1; }), Error);
   EXPECT_THROW(with([](SplatOptions& o) { o.finest = std::nanf(""); }), Error);
-  EXPECT_THROW(with([](SplatOptions& o) { o.footprints = -1; }), Error);
+  EXPECT_THROW(with([](SplatOptions& o) { o.thickness = -1; }), Error);
   EXPECT_THROW(with([](SplatOptions& o) { o.dilation = 4; }), Error);
   EXPECT_THROW(with([](SplatOptions& o) { o.points_per_pixel = 0; }), Error);
   EXPECT_THROW(splat_plane({}, {0, 8}), Error);

@@ -30,7 +30,9 @@ Cloud every(const Cloud& cloud, std::size_t step) {
 TEST(ClosedSplat, shows_what_the_narrow_splat_shows_and_closes_the_rest) {
   const View view = box_world_view(kCamera, pose_at(0, 0, -2, 0.1));
   const Cloud sparse = every(lift(view), 23);
-  const Splat plain = splat(sparse, kCamera, view.world_from_cam, of_radius(1.5f));
+  SplatOptions narrow = of_radius(1.5f);
+  narrow.thickness = .05f;
+  const Splat plain = splat(sparse, kCamera, view.world_from_cam, narrow);
   ASSERT_LT(cv::countNonZero(plain.hit), 0.5 * static_cast<double>(plain.hit.total()));
   const Splat closed = closed_splat(sparse, kCamera, view.world_from_cam, of_radius(32), 1.5f);
   EXPECT_EQ(cv::countNonZero(closed.hit), static_cast<int>(closed.hit.total()));
@@ -75,6 +77,34 @@ TEST(ClosedSplat, nothing_is_seen_through_a_surface_of_sparse_points) {
   const Splat closed = closed_splat(cloud, kCamera, Pose::Identity(), of_radius(4));
   EXPECT_EQ(cv::countNonZero(closed.first_depth > 1.5), 0);
   EXPECT_GT(closed.color(30, 40)[0], .95f);
+}
+
+TEST(ClosedSplat, nothing_shines_through_a_board_however_its_points_fall) {
+  for (const double apart : {.72, 1., 1.41, 2., 2.7}) {
+    Cloud board = wall(1, apart, 255);
+    for (const bool told : {false, true}) {
+      if (told) {
+        for (Point& p : board) p.footprint = static_cast<float>(apart / kCamera.fx);
+      }
+      const Cloud cloud = board + wall(2, .7, 0);
+      for (const double turn : {0., .02}) {
+        const Splat closed = closed_splat(cloud, kCamera, pose_at(0, 0, 0, turn), of_radius(4));
+        const cv::Rect inner(8, 8, 64, 44);
+        EXPECT_EQ(cv::countNonZero(closed.expected_depth(inner) > 1.1), 0) << apart << told << turn;
+        double least = 1;
+        std::vector<cv::Mat> channels;
+        cv::split(closed.color(inner), channels);
+        cv::minMaxLoc(channels[0], &least);
+        EXPECT_GT(least, .99) << apart << told << turn;
+      }
+    }
+  }
+}
+
+TEST(ClosedSplat, gaps_close_whatever_the_finest_radius) {
+  const Cloud cloud = wall(1, 4, 255) + wall(2, 1, 0);
+  const Splat closed = closed_splat(cloud, kCamera, Pose::Identity(), of_radius(8), .75f);
+  EXPECT_EQ(cv::countNonZero(closed.first_depth > 1.5), 0);
 }
 
 TEST(ClosedSplat, surfaces_do_not_grow_and_slits_between_them_stay_open) {

@@ -141,6 +141,17 @@ double peak_memory_mib() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
+/// Milliseconds of one forward as `pixelsynth` computes it.
+void time_widths() {
+  for (const Module& module : modules_of_widths()) {
+    nn::Tensor out;
+    nn::Workspace workspace;
+    const auto forward = module.make({}, &out);
+    std::printf("%s: %.2f ms\n", module.name.c_str(),
+                fastest(kRuns, [&] { forward(workspace); }) * 1e3);
+  }
+}
+
 /// A process that runs one module and nothing else, so that its peak memory is the module's.
 void memory_of(const std::string& name) {
   const double before = peak_memory_mib();
@@ -187,6 +198,8 @@ int main(int argc, char** argv) {
   CLI::App app("Times operators and networks.");
   std::string json, memory, isa, only;
   int threads = 0;
+  bool widths = false;
+  app.add_flag("--widths", widths, "Only what three widths of each network take");
   app.add_option("--json", json, "File to write");
   app.add_option("--only", only, "Only this module");
   app.add_option("--memory", memory, "Only the peak memory of this module");
@@ -197,7 +210,9 @@ int main(int argc, char** argv) {
   for (const ps::nn::Isa one : ps::nn::available_isas()) {
     if (to_string(one) == isa) ps::nn::set_isa(one);
   }
-  if (!memory.empty()) {
+  if (widths) {
+    ps::bench::time_widths();
+  } else if (!memory.empty()) {
     ps::bench::memory_of(memory);
   } else {
     ps::bench::run(json, only);

@@ -44,15 +44,20 @@ std::shared_ptr<std::vector<std::int32_t>> some_codes() {
   return codes;
 }
 
-Forward depth(const ModelOptions& options, nn::Tensor* out) {
-  const auto net = std::make_shared<models::DepthNet>(models::random_depth_net(), options);
+/// Published at 128 channels, else as the trainer makes them.
+nn::Weights autoencoder_weights(int width) {
+  return models::random_autoencoder(width, width / 2, width < 128 ? width / 2 : 32);
+}
+
+Forward depth(int width, const ModelOptions& options, nn::Tensor* out) {
+  const auto net = std::make_shared<models::DepthNet>(models::random_depth_net(width), options);
   const auto in = picture(3);
   *out = nn::Tensor({1, kSide, kSide, 1});
   return [=](nn::Workspace& workspace) { net->forward(*in, *out, workspace); };
 }
 
-Forward vq_encode(const ModelOptions& options, nn::Tensor* out) {
-  const auto net = std::make_shared<models::Autoencoder>(models::random_autoencoder(), options);
+Forward vq_encode(int width, const ModelOptions& options, nn::Tensor* out) {
+  const auto net = std::make_shared<models::Autoencoder>(autoencoder_weights(width), options);
   const auto in = picture(3);
   *out = nn::Tensor(net->grid(in->shape()));
   return [=](nn::Workspace& workspace) {
@@ -62,15 +67,15 @@ Forward vq_encode(const ModelOptions& options, nn::Tensor* out) {
   };
 }
 
-Forward vq_decode(const ModelOptions& options, nn::Tensor* out) {
-  const auto net = std::make_shared<models::Autoencoder>(models::random_autoencoder(), options);
+Forward vq_decode(int width, const ModelOptions& options, nn::Tensor* out) {
+  const auto net = std::make_shared<models::Autoencoder>(autoencoder_weights(width), options);
   const auto codes = some_codes();
   *out = nn::Tensor({1, kSide, kSide, 3});
   return [=](nn::Workspace& workspace) { net->decode(codes->data(), *out, workspace); };
 }
 
-Forward pixel_cnn(const ModelOptions& options, nn::Tensor* out) {
-  const auto net = std::make_shared<models::PixelCnn>(models::random_pixel_cnn(), options);
+Forward pixel_cnn(int width, const ModelOptions& options, nn::Tensor* out) {
+  const auto net = std::make_shared<models::PixelCnn>(models::random_pixel_cnn(width), options);
   cv::Mat1b background(kSide, kSide, std::uint8_t{0});
   background(cv::Rect(144, 0, 112, kSide)) = 1;
   const auto order = std::make_shared<outpaint::Order>(outpaint::order_of(background));
@@ -80,35 +85,61 @@ Forward pixel_cnn(const ModelOptions& options, nn::Tensor* out) {
       [=](nn::Workspace& workspace) { net->forward(codes->data(), order->masks, *out, workspace); };
 }
 
-Forward refine(const ModelOptions& options, nn::Tensor* out) {
-  const auto net = std::make_shared<models::Refiner>(models::random_refiner(), options);
+Forward refine(int width, const ModelOptions& options, nn::Tensor* out) {
+  const auto net = std::make_shared<models::Refiner>(models::random_refiner(width), options);
   const auto in = picture(4);
   const auto noise = std::make_shared<std::vector<float>>(net->noise_count(), 0.3f);
   *out = nn::Tensor({1, kSide, kSide, 3});
   return [=](nn::Workspace& workspace) { net->forward(*in, noise->data(), *out, workspace); };
 }
 
-Forward discriminate(const ModelOptions& options, nn::Tensor* out) {
-  const auto net = std::make_shared<models::Discriminator>(models::random_discriminator(), options);
+Forward discriminate(int width, const ModelOptions& options, nn::Tensor* out) {
+  const auto net =
+      std::make_shared<models::Discriminator>(models::random_discriminator(width), options);
   const auto in = picture(3);
   *out = nn::Tensor({1, 1, 1, 1});
   return [=](nn::Workspace& workspace) { net->score(*in, out->data(), workspace); };
 }
 
-Forward classify(const ModelOptions& options, nn::Tensor* out) {
-  const auto net = std::make_shared<models::Classifier>(models::random_classifier(), options);
+Forward classify(int width, const ModelOptions& options, nn::Tensor* out) {
+  const auto net = std::make_shared<models::Classifier>(models::random_classifier(width), options);
   const auto in = picture(3);
   *out = nn::Tensor({1, 1, 1, net->classes()});
   return [=](nn::Workspace& workspace) { net->forward(*in, *out, workspace); };
 }
 
+template <typename Make>
+auto bound(const Make& make, int width) {
+  return [=](const ModelOptions& options, nn::Tensor* out) { return make(width, options, out); };
+}
+
 }  // namespace
 
 std::vector<Module> modules() {
-  return {{"depth U-Net", 5.53, 45, depth},          {"VQ encode", 3.73, 30, vq_encode},
-          {"VQ decode", 2.58, 20, vq_decode},        {"PixelCNN, whole", 11.43, 0, pixel_cnn},
-          {"refinement", 128.2, 500, refine},        {"discriminator", 9.20, 70, discriminate},
-          {"classifier at 256^2", 4.74, 0, classify}};
+  return {{"depth U-Net", 5.53, 45, bound(depth, 32)},
+          {"VQ encode", 3.73, 30, bound(vq_encode, 128)},
+          {"VQ decode", 2.58, 20, bound(vq_decode, 128)},
+          {"PixelCNN, whole", 11.43, 0, bound(pixel_cnn, 80)},
+          {"refinement", 128.2, 500, bound(refine, 64)},
+          {"discriminator", 9.20, 70, bound(discriminate, 64)},
+          {"classifier at 256^2", 4.74, 0, bound(classify, 64)}};
+}
+
+std::vector<Module> modules_of_widths() {
+  std::vector<Module> all;
+  const auto add = [&](const std::string& name, const std::vector<int>& widths, const auto& make) {
+    for (const int width : widths) {
+      all.push_back({name + ", " + std::to_string(width), 0, 0, bound(make, width)});
+    }
+  };
+  add("depth U-Net", {8, 16, 24}, depth);
+  add("VQ encode", {32, 64, 96}, vq_encode);
+  add("VQ decode", {32, 64, 96}, vq_decode);
+  add("PixelCNN, whole", {16, 32, 48}, pixel_cnn);
+  add("refinement", {8, 16, 24}, refine);
+  add("discriminator", {8, 16, 24}, discriminate);
+  add("classifier at 256^2", {8, 16, 24}, classify);
+  return all;
 }
 
 }  // namespace ps::bench

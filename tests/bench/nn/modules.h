@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every network at its published width, with weights by chance.
+// Every network, with weights by chance.
 #pragma once
 
 #include <functional>
@@ -19,6 +19,9 @@ struct Module {
   std::function<std::function<void(nn::Workspace&)>(const models::ModelOptions&, nn::Tensor*)> make;
 };
 
+/// At the published widths.
 std::vector<Module> modules();
+/// At three widths each, the shipped one in the middle; `gflop` is not told.
+std::vector<Module> modules_of_widths();
 
 }  // namespace ps::bench
