@@ -101,12 +101,6 @@ TEST(ClosedSplat, nothing_shines_through_a_board_however_its_points_fall) {
   }
 }
 
-TEST(ClosedSplat, gaps_close_whatever_the_finest_radius) {
-  const Cloud cloud = wall(1, 4, 255) + wall(2, 1, 0);
-  const Splat closed = closed_splat(cloud, kCamera, Pose::Identity(), of_radius(8), .75f);
-  EXPECT_EQ(cv::countNonZero(closed.first_depth > 1.5), 0);
-}
-
 TEST(ClosedSplat, surfaces_do_not_grow_and_slits_between_them_stay_open) {
   Cloud cloud;
   for (const Point& p : wall(1, 1, 255)) {
