@@ -54,7 +54,8 @@ class AtomicFiles {
   void remove(const std::filesystem::path& path);
   /// Puts all in their places, then calls `last`, if given, which may put something else in place.
   /// Throws ps::Error when one cannot be, and what `last` throws; then the places hold again what
-  /// they held, files that is (but for those replaced before it where the file system has no hard links).
+  /// they held, files that is (but for those replaced before it where the file system has no hard
+  /// links).
   void commit(const std::function<void()>& last = {});
 
  private:

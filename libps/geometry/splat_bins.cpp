@@ -59,7 +59,8 @@ class TileRanges {
 };
 
 /// @param focal  pixels
-/// @return pixels
+/// @param z      depth of the point, metres
+/// @return its radius, pixels
 float radius_of(const PointsView& points, std::size_t i, float focal, float z,
                 const SplatOptions& options) {
   if (points.footprint == 0) return options.finest;

@@ -12,12 +12,12 @@ constexpr float kFinestSplat = 1;  ///< pixels; of splats that show a cloud as s
 /// surfaces in their place; where it is sparse, as whole as wide ones; and surfaces do not grow
 /// beyond their outlines.
 ///
-/// Radii follow the footprints (SplatOptions::finest), and what is a twentieth farther than a pixel's
-/// first hit is hidden. A gap is where a closing of inverse depth by
-/// squares, each twice as wide, is nearer than what is shown: the surface around it is nearer than
-/// what is seen through it, or nothing is seen. It takes the mean of that surface's pixels beside
-/// it, ring by ring. What is cut by the picture's edge may reach on to it. After Grossman and
-/// Dally, "Point sample rendering" (1998), which closes gaps by a pyramid.
+/// Radii follow the footprints (SplatOptions::finest), and what is a twentieth farther than the
+/// first hit of a pixel is hidden. A gap is where a closing of inverse depth by squares, each twice
+/// as wide, is nearer than what is shown: the surface around it is nearer than what is seen through
+/// it, or nothing is seen. It takes the mean of that surface's pixels beside it, ring by ring. What
+/// is cut by the picture's edge may reach on to it. After Grossman and Dally, "Point sample
+/// rendering" (1998), which closes gaps by a pyramid.
 /// @param options  `finest` is not looked at; radius is that of the widest splats, and how wide
 /// gaps are that are closed; see Splat for what comes back. `missing` is of what no gap was closed
 /// over; `count` and `nearest` are of the splats

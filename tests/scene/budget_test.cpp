@@ -47,8 +47,8 @@ TEST(Budget, a_slanted_plane_is_thinned_without_holes) {
 TEST(Budget, texture_keeps_its_points) {
   const Cloud noisy = picture_cloud(noise, two_metres);
   EXPECT_EQ(thinned(noisy, kFront).size(), noisy.size());
-  // Some squares of three pixels become one point, whose splat reaches a little beyond: so wide that
-  // noisy surfaces are smooth. (Narrower ones cost real frames half a decibel.)
+  // Some squares of three pixels become one point, whose splat reaches a little beyond: so wide
+  // that noisy surfaces are smooth. (Narrower ones cost real frames half a decibel.)
   const Cloud whole = picture_cloud(chequers, two_metres);
   const Cloud thin = thinned(whole, kFront);
   EXPECT_GT(thin.size(), whole.size() * 97 / 100);
