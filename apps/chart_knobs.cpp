@@ -59,15 +59,15 @@ void say_what_lpips_leaves_out(const std::vector<Knob>& knobs, const Context& co
                                     [](const ScoreColumn& c) { return c.name == "LPIPS"; });
     if (!scored) others += (others.empty() ? "" : ", ") + knob.name;
   }
-  if (!others.empty()) context.say("--lpips scores samples and selection alone, not " + others);
+  if (!others.empty()) context.say("--lpips scores samples, guidance and selection alone, not " + others);
 }
 
 }  // namespace
 
 const std::vector<std::string>& knob_names() {
-  static const std::vector<std::string> names = {"samples",          "selection", "radius",
-                                                 "points-per-pixel", "budget",    "image-size",
-                                                 "arithmetic",       "width"};
+  static const std::vector<std::string> names = {
+      "samples",          "guidance", "selection",  "radius",
+      "points-per-pixel", "budget",   "image-size", "arithmetic", "width"};
   return names;
 }
 
@@ -75,6 +75,7 @@ ChartKnobs::ChartKnobs(const ChartKnobOptions& options, const Context& context)
     : perceptual_(options.lpips) {
   for (const std::string& name : options.names) {
     if (name == "samples") knobs_.push_back(samples_knob(outpainting(options, context)));
+    if (name == "guidance") knobs_.push_back(guidance_knob(outpainting(options, context)));
     if (name == "selection") knobs_.push_back(selection_knob(outpainting(options, context)));
     if (name == "radius") knobs_.push_back(radius_knob());
     if (name == "points-per-pixel") knobs_.push_back(points_per_pixel_knob());

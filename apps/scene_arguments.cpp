@@ -36,6 +36,10 @@ void SceneArguments::add_sampling_options(CLI::App& verb) {
   verb.add_option("--temperature", temperature, "Of the sampling; 0 = always the likeliest code")
       ->type_name("T")
       ->check(in_range(0, 2));
+  verb.add_option("--guidance", guidance,
+                  "How much the sampling is held to the nearest seen colours; 0 = not, as published")
+      ->type_name("W")
+      ->check(in_range(0, 1000));
   verb.add_option(
           "--refine-best", refine_best,
           "With judges that look at pictures: refine only so many completions, the best by a "
@@ -178,6 +182,7 @@ SceneOptions SceneArguments::scene(const Context& context) const {
     throw CLI::ValidationError("--refine-best", "does not go with --samples auto");
   }
   o.temperature = temperature;
+  o.guidance = guidance;
   o.refine_best = refine_best;
   o.seed = context.seed;
   if (select == "likelihood") o.keep = outpaint::OutpaintOptions::Keep::likeliest;

@@ -30,6 +30,7 @@ struct SceneArguments {
 
   std::string samples = "50";
   double temperature = 0.5;
+  double guidance = outpaint::OutpaintOptions::kGuidance;
   int refine_best = 0;
   std::string select = "consensus";
 

@@ -158,7 +158,7 @@ void add_options(CLI::App& verb, ChartArguments& a) {
                   "width, which is left out else")
       ->type_name("DIR");
   add_lpips_option(verb, a.knobs.lpips,
-                   " of whole pictures: in the knobs samples and selection alone");
+                   " of whole pictures: in the knobs samples, guidance and selection alone");
 }
 
 }  // namespace

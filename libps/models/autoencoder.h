@@ -50,6 +50,7 @@ class Autoencoder {
   void quantise(const nn::TensorView& pre_quant, std::int32_t* codes) const {
     codebook_.nearest(pre_quant, codes);
   }
+  const nn::Codebook& codebook() const { return codebook_; }
 
   /// @param codes  n x h/8 x w/8 values; throws ps::Error when one is not in [0, codes())
   /// @param image  [n, h, w, 3]: RGB, about [-1,1], not clamped

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
+#include <numeric>
 #include <string>
 
 #include "libps/core/error.h"
@@ -45,7 +47,8 @@ Codebook::Codebook(const WeightTensor& embed) {
       PackedMatrix(1, channels_, size_, [&](int, int c, int code) { return -2 * at(c, code); });
 }
 
-void Codebook::nearest(const TensorView& in, std::int32_t* codes) const {
+template <typename Each>
+void Codebook::for_scores(const TensorView& in, const Each& each) const {
   check_channels(in, channels_);
   Epilogue epilogue;
   epilogue.bias = squares_.data();  // |x|^2 is the same for all codes
@@ -55,20 +58,47 @@ void Codebook::nearest(const TensorView& in, std::int32_t* codes) const {
     thread_local std::vector<float> memory;
     if (memory.size() < kRows * width) memory.resize(kRows * width);
     const float* rows[kRows];
-    float* distances[kRows];
-    for (int r = 0; r < kRows; ++r)
-      distances[r] = memory.data() + static_cast<std::size_t>(r) * width;
+    float* scores[kRows];
+    for (int r = 0; r < kRows; ++r) scores[r] = memory.data() + static_cast<std::size_t>(r) * width;
     for (std::size_t i = begin; i < end; i += kRows) {
       const int count = static_cast<int>(std::min<std::size_t>(kRows, end - i));
       for (int r = 0; r < count; ++r) rows[r] = in.pixel(i + static_cast<std::size_t>(r));
-      matrix_.multiply({rows, &PackedMatrix::kOnlyTap, 1, count, distances, nullptr}, 1, epilogue,
-                       0, matrix_.panels());
-      for (int r = 0; r < count; ++r) {
-        const float* least = std::min_element(distances[r], distances[r] + width);
-        codes[i + static_cast<std::size_t>(r)] = static_cast<std::int32_t>(least - distances[r]);
-      }
+      matrix_.multiply({rows, &PackedMatrix::kOnlyTap, 1, count, scores, nullptr}, 1, epilogue, 0,
+                       matrix_.panels());
+      for (int r = 0; r < count; ++r) each(i + static_cast<std::size_t>(r), scores[r]);
     }
   });
+}
+
+void Codebook::nearest(const TensorView& in, std::int32_t* codes) const {
+  for_scores(in, [&](std::size_t pixel, const float* scores) {
+    codes[pixel] = static_cast<std::int32_t>(std::min_element(scores, scores + size_) - scores);
+  });
+}
+
+void Codebook::excess(const TensorView& in, float* out) const {
+  for_scores(in, [&](std::size_t pixel, const float* scores) {
+    const float least = *std::min_element(scores, scores + size_);
+    std::transform(scores, scores + size_, out + pixel * static_cast<std::size_t>(size_),
+                   [least](float score) { return score - least; });
+  });
+}
+
+float Codebook::spacing() const {
+  const auto width = static_cast<std::size_t>(size_);
+  if (width < 2) return 0;
+  std::vector<float> vectors = vectors_;
+  const auto channels = static_cast<std::size_t>(channels_);
+  std::vector<double> nearest(width);
+  for_scores({vectors.data(), {1, 1, size_, channels_}, channels},
+             [&](std::size_t code, const float* scores) {
+               float least = std::numeric_limits<float>::infinity();
+               for (std::size_t k = 0; k < width; ++k) {
+                 if (k != code) least = std::min(least, scores[k]);
+               }
+               nearest[code] = std::max(0.0, static_cast<double>(least) + squares_[code]);
+             });
+  return static_cast<float>(std::accumulate(nearest.begin(), nearest.end(), 0.0) / size_);
 }
 
 void Codebook::embed(const std::int32_t* codes, const TensorView& out) const {

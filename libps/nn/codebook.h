@@ -22,10 +22,22 @@ class Codebook {
   /// @param codes  in.shape.pixels() values
   void nearest(const TensorView& in, std::int32_t* codes) const;
 
+  /// @brief By how much each code is farther from a pixel than the nearest: |x - e_k|^2, less the
+  /// least of them.
+  /// @param out  in.shape.pixels() x size() values
+  void excess(const TensorView& in, float* out) const;
+
+  /// The mean, over all codes, of the squared distance to the nearest other; 0 for a single code.
+  float spacing() const;
+
   /// @brief The embeddings of codes. Throws ps::Error when a code is not in [0, size()).
   void embed(const std::int32_t* codes, const TensorView& out) const;
 
  private:
+  /// Calls each(pixel, |e_k|^2 - 2 x.e_k of every k) for every pixel, from any thread.
+  template <typename Each>
+  void for_scores(const TensorView& in, const Each& each) const;
+
   int size_ = 0, channels_ = 0;
   std::vector<float> vectors_;  ///< [codes][channels]
   std::vector<float> squares_;  ///< |e_k|^2

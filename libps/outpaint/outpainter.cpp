@@ -24,6 +24,9 @@ void check(const OutpaintOptions& options) {
   if (!(options.temperature >= 0 && options.temperature <= 2)) {
     throw Error("temperature", std::to_string(options.temperature), "0 to 2");
   }
+  if (!(options.guidance >= 0 && options.guidance <= 1000)) {
+    throw Error("guidance", std::to_string(options.guidance), "0 to 1000");
+  }
   if (options.refine_best < 0) {
     throw Error("completions to refine", std::to_string(options.refine_best), "0 (all) or more");
   }
@@ -80,6 +83,7 @@ struct Outpainter::View {
   Progress progress;
   int samples;     ///< to be drawn at most
   int shown = -1;  ///< the completion whose refined picture there is
+  std::vector<float> guidance = {};  ///< see SampleOptions
   std::vector<Completion> completions = {};
   std::vector<Signal> signals = {};
 };
@@ -94,14 +98,29 @@ std::vector<std::int32_t> Outpainter::encode(View& view, const nn::TensorView& p
                                              const cv::Mat1b& background) {
   view.progress.at(0);
   const AddedSeconds clock(view.result.report.encode_seconds);
-  std::vector<std::int32_t> codes(networks_.autoencoder->grid(projection.shape).pixels());
-  if (view.options.encode_nearest) {
-    const nn::Tensor whole = with_nearest_colors(projection, background);
-    networks_.autoencoder->encode(whole, codes.data(), workspace_);
-  } else {
-    networks_.autoencoder->encode(projection, codes.data(), workspace_);
+  const models::Autoencoder& autoencoder = *networks_.autoencoder;
+  const nn::Shape grid = autoencoder.grid(projection.shape);
+  std::vector<std::int32_t> codes(grid.pixels());
+  nn::Tensor pre_quant(grid);
+  const bool nothing_seen = cv::countNonZero(background) == background.size().area();
+  const bool guided = view.options.guidance > 0 && !nothing_seen;
+  if (guided || view.options.encode_nearest) {
+    autoencoder.encode(with_nearest_colors(projection, background), pre_quant, workspace_);
+    if (guided) guide(view, pre_quant);
   }
+  if (!view.options.encode_nearest) autoencoder.encode(projection, pre_quant, workspace_);
+  autoencoder.quantise(pre_quant, codes.data());
   return codes;
+}
+
+void Outpainter::guide(View& view, const nn::TensorView& pre_quant) {
+  const nn::Codebook& codebook = networks_.autoencoder->codebook();
+  const float spacing = codebook.spacing();
+  if (!(spacing > 0)) return;
+  view.guidance.resize(pre_quant.shape.pixels() * static_cast<std::size_t>(codebook.size()));
+  codebook.excess(pre_quant, view.guidance.data());
+  const auto scale = static_cast<float>(-view.options.guidance / spacing);
+  for (float& logit : view.guidance) logit *= scale;
 }
 
 void Outpainter::sample(View& view, Sampler& sampler, int count) {
@@ -111,6 +130,7 @@ void Outpainter::sample(View& view, Sampler& sampler, int count) {
   options.temperature = view.options.temperature;
   options.seed = view.options.seed;
   options.view = view.options.view;
+  options.guidance = view.guidance.empty() ? nullptr : view.guidance.data();
   options.progress = [&](double done) {
     view.progress.at(done * work);
     return true;

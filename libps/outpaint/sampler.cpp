@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <mutex>
 
@@ -35,6 +36,11 @@ void check(const SampleOptions& options, int first, int count, const Order& orde
                   "0 to " + std::to_string(codes - 1));
     }
   }
+}
+
+/// The first of the greatest logits.
+std::int32_t likeliest(const float* logits, int codes) {
+  return static_cast<std::int32_t>(std::max_element(logits, logits + codes) - logits);
 }
 
 /// The softmax of one row of logits.
@@ -207,23 +213,29 @@ class Sampler::Impl {
   /// Chooses one cell's code.
   void take(int cell, int completion, const float* logits, const SampleOptions& options,
             Completion& to) const {
-    thread_local std::vector<float> probabilities;
+    thread_local std::vector<float> guided, probabilities;
     const int codes = network_.codes();
     check_finite(cell, completion, logits);
-    const auto likeliest =
-        static_cast<std::size_t>(std::max_element(logits, logits + codes) - logits);
-    auto code = static_cast<std::int32_t>(likeliest);
+    const float* choice = logits;
+    if (options.guidance) {
+      const float* add = options.guidance + static_cast<std::size_t>(cell) * static_cast<std::size_t>(codes);
+      guided.resize(static_cast<std::size_t>(codes));
+      std::transform(logits, logits + codes, add, guided.begin(), std::plus<>());
+      choice = guided.data();
+    }
+    std::int32_t code = likeliest(choice, codes);
     if (options.forced) {
       code = options.forced[cell];
     } else if (static_cast<float>(options.temperature) > 0) {
-      softmax_of(logits, codes, options.temperature, probabilities);
+      softmax_of(choice, codes, options.temperature, probabilities);
       code = draw(probabilities,
                   random_unit(options.seed, {options.view, static_cast<std::uint32_t>(completion),
                                              static_cast<std::uint32_t>(cell), 0}));
     }
     softmax_of(logits, codes, 1, probabilities);
-    to.log_likelihood += static_cast<double>(logits[code]) - logits[likeliest] +
-                         std::log(static_cast<double>(probabilities[likeliest]));
+    const auto best = static_cast<std::size_t>(likeliest(logits, codes));
+    to.log_likelihood += static_cast<double>(logits[code]) - logits[best] +
+                         std::log(static_cast<double>(probabilities[best]));
     to.codes[static_cast<std::size_t>(cell)] = code;
     if (options.observe) options.observe(cell, completion, logits);
   }

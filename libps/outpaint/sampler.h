@@ -18,6 +18,9 @@ struct SampleOptions {
   /// By cell, as many as the order has: taken in place of what would be drawn (teacher forcing);
   /// null = draw.
   const std::int32_t* forced = nullptr;
+  /// [cells][codes], added to the logits before a code is drawn; null = nothing. What is said of a
+  /// completion, and to `observe`, is without it.
+  const float* guidance = nullptr;
   /// Told what share is done, from 0 to 1, never falling: one call at a time, from any thread.
   /// Sampling stops when it returns false, or throws.
   std::function<bool(double done)> progress;

@@ -25,6 +25,10 @@ struct OutpaintKnobOptions {
 /// the input does not see the target, and of all of it (and LPIPS).
 Knob samples_knob(const OutpaintKnobOptions& options);
 
+/// @brief How much sampling is held to the nearest seen colours (outpaint::OutpaintOptions). Scores
+/// as samples_knob().
+Knob guidance_knob(const OutpaintKnobOptions& options);
+
 /// @brief Which opinion chooses the completion that is kept. Scores as samples_knob().
 Knob selection_knob(const OutpaintKnobOptions& options);
 

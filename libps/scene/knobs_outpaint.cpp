@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "libps/core/error.h"
+#include "libps/core/words.h"
 #include "libps/eval/image_metrics.h"
 #include "libps/eval/pairs.h"
 #include "libps/geometry/point.h"
@@ -72,6 +73,19 @@ Knob samples_knob(const OutpaintKnobOptions& options) {
     settings.back().networks.outpaint.scorers.clear();
     knob.settings.push_back(
         {std::to_string(samples), samples == outpaint::OutpaintOptions().samples});
+  }
+  return outpaint_knob(std::move(knob), settings);
+}
+
+Knob guidance_knob(const OutpaintKnobOptions& options) {
+  Knob knob = {"guidance", "How much sampling is held to the nearest seen colours."};
+  std::vector<OutpaintKnobOptions> settings;
+  for (const double guidance : {0.0, 1.0, 5.0, 20.0, 100.0}) {
+    settings.push_back(options);
+    settings.back().scene.outpaint.guidance = guidance;
+    settings.back().networks.outpaint.scorers.clear();
+    knob.settings.push_back(
+        {in_digits(guidance), guidance == outpaint::OutpaintOptions().guidance});
   }
   return outpaint_knob(std::move(knob), settings);
 }

@@ -38,9 +38,9 @@ app_test(chart_in_an_old_folder_leaves_nothing_of_other_knobs [=[
   is "$(LC_ALL=C ls c | xargs)" = "chart.csv chart.json chart.png image-size.png image-size.samples.csv image-size.svg index.html mine.png radius.txt"]=])
 app_test(chart_says_which_knobs_lpips_does_not_score [=[
   works chart --help
-  prints 'lpips.*samples and selection alone'
+  prints 'lpips.*samples, guidance and selection alone'
   works chart -o c --views 1 --side 64 --knobs radius,image-size --lpips $S/lpips.safetensors
-  says '^--lpips scores samples and selection alone, not radius, image-size$'
+  says '^--lpips scores samples, guidance and selection alone, not radius, image-size$'
   fails 1 'absent' chart -o d --views 1 --side 64 --knobs radius --lpips absent]=])
 app_test(chart_png_is_drawn_as_the_svg_says [=[
   needs ffmpeg

@@ -73,6 +73,33 @@ TEST(Codebook, embeddings_are_those_given_and_find_themselves) {
   EXPECT_EQ(found, codes);
 }
 
+TEST(Codebook, excess_is_the_squared_distance_beyond_the_nearest) {
+  Random random(44);
+  const WeightTensor embed = random.weights({9, 21});
+  const Slice in({1, 3, 5, 9}, 1, random);
+  on_every_isa([&] {
+    const Codebook codebook(embed);
+    std::vector<float> excess(15 * 21);
+    std::vector<std::int32_t> nearest(15);
+    codebook.excess(in, excess.data());
+    codebook.nearest(in, nearest.data());
+    for (std::size_t p = 0; p < 15; ++p) {
+      const float* x = in.view().pixel(p);
+      for (std::int32_t k = 0; k < 21; ++k) {
+        EXPECT_NEAR(excess[p * 21 + static_cast<std::size_t>(k)],
+                    distance(x, embed, k) - distance(x, embed, nearest[p]), 1e-4);
+      }
+    }
+  });
+}
+
+TEST(Codebook, spacing_is_the_mean_squared_distance_to_the_nearest_other) {
+  // In a plane: three in a row, 1 and 3 apart, and one that is there twice.
+  const WeightTensor embed = {{2, 5}, {0, 1, 4, 9, 9, 0, 0, 0, 7, 7}};
+  EXPECT_NEAR(Codebook(embed).spacing(), (1.0 + 1 + 9 + 0 + 0) / 5, 1e-5);
+  EXPECT_EQ(Codebook({{3, 1}, {1, 2, 3}}).spacing(), 0);
+}
+
 TEST(Codebook, refuses_misfit_shapes_and_codes) {
   Random random(44);
   const Codebook codebook(random.weights({4, 10}));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <functional>
+#include <numeric>
 
 #include "libps/core/parallel.h"
 #include "tests/io/support.h"
@@ -13,8 +14,11 @@ TEST_F(OutpainterOfRandomWeights, a_part_of_the_view_gives_what_the_whole_view_g
   OutpaintOptions options;
   options.samples = 4;
   options.seed = 5;
-  const auto completions = Sampler(pixel_cnn_, order_of(background_), known_codes())
-                               .sample(0, 4, {0.5, 5, 0, nullptr, nullptr, nullptr});
+  options.guidance = 0;
+  SampleOptions as_drawn;
+  as_drawn.seed = 5;
+  const auto completions =
+      Sampler(pixel_cnn_, order_of(background_), known_codes()).sample(0, 4, as_drawn);
   const Outpainted result =
       outpainter({recorder({1, 0, 3, 2})}).run(projection_, background_, options);
   ASSERT_EQ(seen_.size(), 4u);
@@ -46,6 +50,35 @@ TEST_F(OutpainterOfRandomWeights, cells_seen_in_part_continue_what_is_seen_unles
   options.encode_nearest = false;
   EXPECT_EQ(used(), known(codes_of(projection_)));
   EXPECT_NE(known(known_codes()), known(codes_of(projection_)));
+}
+
+/// The more of it, the nearer to the codes of the nearest seen colours; at its end, those alone.
+TEST_F(OutpainterOfRandomWeights, guidance_holds_completions_to_the_nearest_seen_colours) {
+  OutpaintOptions options;
+  options.samples = 1;
+  options.temperature = 1;
+  const auto nearest = known_codes();
+  const auto equal = [&](double guidance) {
+    options.guidance = guidance;
+    const auto codes = outpainter({}).run(projection_, background_, options).codes;
+    return std::inner_product(codes.begin(), codes.end(), nearest.begin(), std::size_t{0},
+                              std::plus<>(), std::equal_to<>());
+  };
+  const std::size_t none = equal(0), some = equal(5), all = equal(1000);
+  EXPECT_LT(none, some);
+  EXPECT_LE(some, all);
+  EXPECT_GE(all, nearest.size() - 1);  // two codes may be as near
+}
+
+TEST_F(OutpainterOfRandomWeights, guidance_has_nothing_to_hold_to_where_nothing_is_seen) {
+  background_ = 1;
+  std::fill_n(projection_.data(), projection_.shape().pixels() * 3, 0.f);
+  OutpaintOptions options;
+  options.samples = 1;
+  options.guidance = 0;
+  const auto free = outpainter({}).run(projection_, background_, options).codes;
+  options.guidance = 1000;
+  EXPECT_EQ(outpainter({}).run(projection_, background_, options).codes, free);
 }
 
 TEST_F(OutpainterOfRandomWeights, completions_that_are_all_alike_are_drawn_once) {
@@ -82,6 +115,9 @@ TEST_F(OutpainterOfRandomWeights, options_out_of_range_throw_even_where_nothing_
   options = {};
   options.samples = 1001;
   EXPECT_NE(message(options).find("1 to 1000"), std::string::npos);
+  options = {};
+  options.guidance = -1;
+  EXPECT_NE(message(options).find("guidance"), std::string::npos);
   options = {};
   options.refine_best = -1;
   EXPECT_NE(message(options).find("completions to refine"), std::string::npos);
@@ -141,6 +177,7 @@ TEST_F(OutpainterOfRandomWeights, without_scorers_one_is_kept_by_its_codes_and_r
     return static_cast<int>(best_of(scores));
   };
   OutpaintOptions options;
+  options.guidance = 0;
   for (const Keep keep : {Keep::agreed, Keep::likeliest}) {
     for (const bool until_settled : {false, true}) {
       for (const int samples : {1, 9, 40}) {
@@ -179,6 +216,7 @@ TEST_F(OutpainterOfRandomWeights, draws_in_rounds_until_the_best_has_settled) {
 
 TEST_F(OutpainterOfRandomWeights, only_the_likeliest_few_are_refined_when_asked) {
   OutpaintOptions options;
+  options.guidance = 0;
   options.samples = 10;
   options.refine_best = 3;
   options.screen = OutpaintOptions::Screen::likelihood;

@@ -170,6 +170,38 @@ TEST(Sampler, draws_follow_the_softmax_at_every_temperature) {
   }
 }
 
+/// Guidance that shifts all logits by the differences of another distribution draws that one; what
+/// is said of the completion stays the network's opinion.
+TEST(Sampler, guidance_is_added_to_the_logits_of_what_is_drawn_alone) {
+  std::mt19937 random(8);
+  const PixelCnn network = small_network();
+  const Order order = random_order(random, 8, 8, 0.6);
+  const auto codes = random_codes(random, order.size(), network.codes());
+  const auto width = static_cast<std::size_t>(network.codes());
+  const auto wanted = random_codes(random, order.size(), network.codes());
+  std::vector<float> guidance(order.size() * width, -1e4f);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    guidance[i * width + static_cast<std::size_t>(wanted[i])] = 0;
+  }
+  for (const double temperature : {0.0, 1.0}) {
+    SampleOptions options;
+    options.temperature = temperature;
+    const auto free = Sampler(network, order, codes).sample(0, 1, options)[0];
+    const std::vector<float> none(guidance.size(), 0);
+    options.guidance = none.data();
+    EXPECT_EQ(Sampler(network, order, codes).sample(0, 1, options)[0].codes, free.codes);
+    options.guidance = guidance.data();
+    const auto guided = Sampler(network, order, codes).sample(0, 1, options)[0];
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      EXPECT_EQ(guided.codes[i], order.missing[i] ? wanted[i] : codes[i]);
+    }
+    options.guidance = nullptr;
+    options.forced = wanted.data();
+    EXPECT_EQ(guided.log_likelihood,
+              Sampler(network, order, codes).sample(0, 1, options)[0].log_likelihood);
+  }
+}
+
 TEST(Sampler, log_likelihood_is_the_mean_over_missing_cells) {
   std::mt19937 random(6);
   const PixelCnn network = small_network();

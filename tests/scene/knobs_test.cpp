@@ -42,6 +42,7 @@ struct Networks {
 
 std::vector<Knob> all_knobs(const Networks& networks) {
   return {samples_knob(networks.options()),
+          guidance_knob(networks.options()),
           selection_knob(networks.options()),
           radius_knob(),
           points_per_pixel_knob(),
