@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 
 #include "libps/core/error.h"
@@ -21,6 +22,18 @@ constexpr double kEvener = .6;             ///< of the spread is left where scal
 constexpr double kTolerancePerSpread = 2;  ///< of fusing, and at most:
 constexpr double kMostTolerance = .15;
 constexpr double kAnchor = 1e-3;  ///< of unknowns to 0, in pairs
+/// Which of a frame's pairs, the best first, speaks for it: while less than half of the frames are
+/// lost, a good frame has so many good partners.
+constexpr double kSpeaking = .4;
+constexpr double kUsual = .3;  ///< which frame is the usual one, the best first
+
+/// @return the value with such a share of the others before it, in rising order; NaN of none
+double at_share(std::vector<double> values, double share) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto place = values.begin() + std::lround(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
 
 /// The x of least squares of x_a - x_b = the pairs' median ratio; they average to 0.
 Eigen::VectorXd evened(std::size_t count, const std::vector<FramePair>& pairs,
@@ -44,8 +57,8 @@ Eigen::VectorXd evened(std::size_t count, const std::vector<FramePair>& pairs,
   return Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(right);
 }
 
-/// Each frame's middle share of what a pair contradicts, without pairs of refused frames; NaN
-/// without a pair.
+/// The share of what a pair contradicts, of the pair that speaks for each frame, without pairs of
+/// refused frames; NaN without a pair.
 std::vector<double> contradictions(const std::vector<FramePair>& pairs,
                                    const std::vector<FrameWord>& words) {
   std::vector<std::vector<double>> shares(words.size());
@@ -56,9 +69,9 @@ std::vector<double> contradictions(const std::vector<FramePair>& pairs,
     if (!words[pair.b].refused) shares[pair.a].push_back(share);
     if (!words[pair.a].refused) shares[pair.b].push_back(share);
   }
-  std::vector<double> middle;
-  for (std::vector<double>& some : shares) middle.push_back(median(std::move(some)));
-  return middle;
+  std::vector<double> spoken;
+  for (std::vector<double>& some : shares) spoken.push_back(at_share(std::move(some), kSpeaking));
+  return spoken;
 }
 
 /// @return the frame to be refused next, or as many as there are frames: none
@@ -72,7 +85,7 @@ std::size_t worst_of(const std::vector<double>& shares, const std::vector<FrameW
     if (worst == shares.size() || shares[i] > shares[worst]) worst = i;
   }
   if (usual.empty()) return shares.size();
-  const double most = std::max(contradicted, 3 * median(std::move(usual)));
+  const double most = std::max(contradicted, 3 * at_share(std::move(usual), kUsual));
   return shares[worst] > most ? worst : shares.size();
 }
 
@@ -138,6 +151,41 @@ void even_scales(const std::vector<SmallFrame>& frames, std::vector<FramePair>* 
   *pairs = std::move(fresh);
 }
 
+/// @return whether even the frames that are left contradict each other too much, as their words
+/// have it, for anything that they say to be worth heeding
+bool at_odds(const std::vector<SmallFrame>& frames, const FrameStudyOptions& options,
+             std::vector<FramePair> pairs, const FrameStudy& study) {
+  hold_against_each_other(frames, study.words, options.tolerance, &pairs);
+  std::vector<double> shares = contradictions(pairs, study.words);
+  shares.erase(std::remove_if(shares.begin(), shares.end(), [](double x) { return std::isnan(x); }),
+               shares.end());
+  return at_share(std::move(shares), .5) > options.contradicted;
+}
+
+/// Of frames in camps that differ in scale alone: evens that out, and judges them again.
+void try_scales_first(const std::vector<SmallFrame>& frames, const FrameStudyOptions& options,
+                      std::vector<FramePair> pairs, FrameStudy* study) {
+  FrameStudy evened = *study;
+  evened.gave_up = false;
+  hold_against_each_other(frames, evened.words, kWideTolerance, &pairs);
+  evened.spread = spread_of(pairs);
+  even_scales(frames, &pairs, &evened);
+  hold_against_each_other(frames, evened.words, options.tolerance, &pairs);
+  refuse(pairs, options, &evened);
+  if (!evened.gave_up) *study = std::move(evened);
+}
+
+/// The study without any of its advice.
+FrameStudy without_advice(const FrameStudy& study) {
+  FrameStudy silent;
+  for (const FrameWord& word : study.words) {
+    silent.words.emplace_back();
+    silent.words.back().contradicted = word.contradicted;
+  }
+  silent.gave_up = true;
+  return silent;
+}
+
 }  // namespace
 
 FrameStudy study_frames(const ViewSource& source, const FrameStudyOptions& options) {
@@ -154,7 +202,8 @@ FrameStudy study_frames(const ViewSource& source, const FrameStudyOptions& optio
   std::vector<FramePair> pairs = plan_pairs(frames, options.partners);
   hold_against_each_other(frames, study.words, options.tolerance, &pairs);
   refuse(pairs, options, &study);
-  if (study.gave_up) return study;
+  if (study.gave_up && options.scales) try_scales_first(frames, options, pairs, &study);
+  if (study.gave_up) return without_advice(study);
   const auto out = [&](const FramePair& p) {
     return study.words[p.a].refused || study.words[p.b].refused;
   };
@@ -162,6 +211,7 @@ FrameStudy study_frames(const ViewSource& source, const FrameStudyOptions& optio
   hold_against_each_other(frames, study.words, kWideTolerance, &pairs);
   study.spread = spread_of(pairs);
   if (options.scales) even_scales(frames, &pairs, &study);
+  if (options.refuse && at_odds(frames, options, pairs, study)) return without_advice(study);
   if (options.gains) even_colors(pairs, &study.words);
   return study;
 }

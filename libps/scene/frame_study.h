@@ -16,10 +16,11 @@ struct FrameStudyOptions {
   /// Two depths along a ray contradict each other when they differ by more than this share beyond
   /// all depths around the pixel.
   double tolerance = 0.08;
-  /// A frame is left out when in the middle one of its pairs more than this share of what both
-  /// see is contradicted, and more than three times what is usual among the frames with a pair: the
-  /// worst first, then the worst of the others. None is, if that would be half of those with a
-  /// pair: the study gives up then.
+  /// A frame is left out when in the pair that speaks for it (two fifths of its pairs are better)
+  /// more than this share of what both see is contradicted, and more than three times what is usual
+  /// among the frames with a pair: the worst first, then the worst of the others. None is, if that
+  /// would be half of those with a pair, or if more than this share is still contradicted in the
+  /// middle one of the frames that are left: the study gives up then.
   double contradicted = 0.15;
 };
 
@@ -27,13 +28,13 @@ struct FrameStudyOptions {
 struct FrameWord {
   cv::Vec3f gain = {1, 1, 1};  ///< its colours times this are as bright as the others'
   double scale = 1;            ///< its depths times this agree with the others'
-  double contradicted = 0;     ///< share, in the middle one of its pairs; 0 without a pair
+  double contradicted = 0;     ///< share, in the pair that speaks for it; 0 without a pair
   bool refused = false;
 };
 
 struct FrameStudy {
   std::vector<FrameWord> words;  ///< one for each frame; those of empty frames change nothing
-  /// Half of the frames and more contradict the others: none is refused, and nothing is evened out.
+  /// Too many frames contradict the others: none is refused, and nothing is evened out.
   bool gave_up = false;
   /// The middle |log ratio| of two frames' depths of one surface, whatever it comes from: noise,
   /// poses, lenses. 0 where no two frames see the same.

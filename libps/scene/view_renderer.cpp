@@ -8,6 +8,7 @@
 #include "libps/core/error.h"
 #include "libps/core/random.h"
 #include "libps/geometry/point.h"
+#include "libps/scene/greys.h"
 #include "libps/scene/network_view.h"
 
 namespace ps {
@@ -97,7 +98,8 @@ RenderedView ViewRenderer::render(const pcl::PointCloud<Point>& cloud, const Int
   if (refiner_ == nullptr || (view.missing_share == 0 && !options_.as_published)) return view;
   const Intrinsics seen = network_lens(lens);
   const Splat coarse = splat(cloud, seen, world_from_cam, options_.splat);
-  const Image base = resampled(refined(coarse), seen, lens);
+  Image base = resampled(refined(coarse), seen, lens);
+  if (is_grey(cloud)) base = grey_of(base);
   constexpr double kSeam = 4;  // of the networks' pixels
   view.color =
       options_.as_published ? base : completed(view.splat, base, kSeam * lens.fx / seen.fx);

@@ -81,6 +81,36 @@ TEST(FrameStudy, a_lost_frame_is_refused_and_no_other) {
   EXPECT_FALSE(heeded.load(1).depth.empty());
 }
 
+/// Turned by 20 degrees and moved, each in a direction of its own.
+void lose(View* view, int number) {
+  const double angle = 2.4 * number;
+  const Eigen::Vector3d axis(std::cos(angle), std::sin(angle), .3 * std::sin(3 * angle));
+  view->world_from_cam.translation() += .4 * Eigen::Vector3d(std::sin(angle), 0, std::cos(angle));
+  view->world_from_cam.rotate(Eigen::AngleAxisd(.35, axis.normalized()));
+}
+
+TEST(FrameStudy, two_fifths_of_the_frames_may_be_lost) {
+  std::vector<View> views = frames();
+  for (const int i : {1, 3, 6, 7}) lose(&views[static_cast<std::size_t>(i)], i);
+  const FrameStudy study = study_frames(source_of(views));
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    EXPECT_EQ(study.words[i].refused, i == 1 || i == 3 || i == 6 || i == 7)
+        << i << ": " << study.words[i].contradicted;
+  }
+}
+
+TEST(FrameStudy, says_nothing_where_nearly_all_frames_are_lost) {
+  std::vector<View> views = frames();
+  for (int i = 0; i < 8; ++i) lose(&views[static_cast<std::size_t>(i)], i);
+  const FrameStudy study = study_frames(source_of(views));
+  EXPECT_TRUE(study.gave_up);
+  EXPECT_EQ(study.spread, 0) << "so that the tolerance stays";
+  for (const FrameWord& word : study.words) {
+    EXPECT_FALSE(word.refused);
+    EXPECT_EQ(word.scale, 1);
+  }
+}
+
 /// Has something stand before this share of the pixels, from that one on.
 void cover(View* view, double share, double from) {
   const auto total = static_cast<double>(view->depth.total());

@@ -68,6 +68,37 @@ TEST(SceneBuilder, outpainting_leaves_what_was_observed_as_it_was) {
   EXPECT_EQ(outpainted_in(after), after.size() - before.size());
 }
 
+double most_colorful(const Image& image) {
+  double most = 0;
+  for (const cv::Vec3f& c : image) {
+    const auto [low, high] = std::minmax({c[0], c[1], c[2]});
+    most = std::max(most, static_cast<double>(high - low));
+  }
+  return most;
+}
+
+TEST(SceneBuilder, what_is_outpainted_of_a_grey_photo_is_grey) {
+  View grey = input_view();
+  for (cv::Vec3f& c : grey.color) c = cv::Vec3f::all(c[1]);
+  const Pose beside = turned(grey.world_from_cam, 0.4);
+  for (const bool colorful : {false, true}) {
+    SceneBuilder scene(random_networks().all(), kLens, few_samples());
+    if (colorful) grey.color(0, 0) = {1, 0, 0};
+    scene.observe(grey, 0);
+    const SupportView support = scene.outpaint(beside, 1);
+    ViewRenderer renderer(random_networks().all().outpaint.refiner);
+    const RenderedView view = renderer.render(scene.cloud(), kLens, beside);
+    ASSERT_GT(view.missing_share, .1);
+    if (colorful) {
+      EXPECT_GT(most_colorful(support.view.color), .1);
+      EXPECT_GT(most_colorful(view.color), .1);
+    } else {
+      EXPECT_LT(most_colorful(support.view.color), 1e-5);
+      EXPECT_LT(most_colorful(view.color), 1e-5);
+    }
+  }
+}
+
 TEST(SceneBuilder, invented_points_never_stand_before_what_was_observed) {
   SceneBuilder scene = observed_scene();
   const View input = input_view();
