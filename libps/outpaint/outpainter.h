@@ -45,7 +45,7 @@ struct OutpaintOptions {
   /// distance) / (the same from a code to its nearest other, on the average). 0, as published: not
   /// at all; up to 1000.
   double guidance = kGuidance;
-  static constexpr double kGuidance = 5;
+  static constexpr double kGuidance = 2;
   /// Decode and refine for each completion only what it can change; false: whole pictures.
   bool region = true;
   /// Told what share of the view is done, from 0 to 1 and never falling, in all stages: one call at
