@@ -147,17 +147,19 @@ PlanOptions SceneArguments::plan() const {
 
 std::optional<BudgetOptions> SceneArguments::point_budget() const {
   BudgetOptions options;
-  if (budget == "none" || (budget.empty() && no_outpaint)) return std::nullopt;
-  if (budget.empty() || budget == "auto") return options;
-  const auto equals = budget.find('=');
-  const std::string what = budget.substr(0, equals);
+  const std::string text = budget.value_or(no_outpaint ? "none" : "auto");
+  if (text == "none") return std::nullopt;
+  if (text == "auto") return options;
+  const auto equals = text.find('=');
+  const std::string what = text.substr(0, equals);
   char* end = nullptr;
   const double value =
-      equals == std::string::npos ? 0 : std::strtod(budget.c_str() + equals + 1, &end);
+      equals == std::string::npos ? 0 : std::strtod(text.c_str() + equals + 1, &end);
   const bool sound = end != nullptr && *end == '\0' && value >= 1 && value <= kNoBound;
-  if (!sound || (what != "points" && what != "psnr")) {
+  const bool whole = what == "points" && value == std::floor(value);
+  if (!sound || !(whole || what == "psnr")) {
     throw CLI::ValidationError("--budget",
-                               "'" + budget + "'; expected none, auto, points=N or psnr=DB");
+                               "'" + text + "'; expected none, auto, points=N or psnr=DB");
   }
   if (what == "points") options.points = static_cast<std::size_t>(value);
   if (what == "psnr") options.psnr = value;

@@ -34,7 +34,8 @@ struct SceneArguments {
   int refine_best = 0;
   std::string select = "consensus";
 
-  std::string budget;  ///< none, auto, points=N or psnr=DB; empty = auto where it outpaints
+  /// none, auto, points=N or psnr=DB; not given = auto where it outpaints
+  std::optional<std::string> budget;
   int view_size = 1024;
   std::vector<std::string> paths;
   int path_frames = 64;

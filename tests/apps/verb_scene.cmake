@@ -116,8 +116,8 @@ app_test(scene_keeps_to_a_budget [=[
   is $left -lt 20
   says "warning: --budget points=1: $left points stay, as observed and outpainted"
   grep -q '"points_asked": 1' one/report.json
-  for b in few points=0 psnr=x points=; do
-    fails 2 "'$b'; expected none, auto, points=N or psnr=DB" scene $args -o t --budget $b
+  for b in few points=0 psnr=x points= points=1.5 ''; do
+    fails 2 "'$b'; expected none, auto, points=N or psnr=DB" scene $args -o t --budget "$b"
   done]=])
 app_test(scene_refuses_what_it_cannot_do [=[
   fails 2 "'35grad' is no angle.*34deg" scene $S/photo.png -o a --range-horizontal 35grad
