@@ -59,15 +59,16 @@ void say_what_lpips_leaves_out(const std::vector<Knob>& knobs, const Context& co
                                     [](const ScoreColumn& c) { return c.name == "LPIPS"; });
     if (!scored) others += (others.empty() ? "" : ", ") + knob.name;
   }
-  if (!others.empty()) context.say("--lpips scores samples, guidance and selection alone, not " + others);
+  if (!others.empty())
+    context.say("--lpips scores samples, guidance and selection alone, not " + others);
 }
 
 }  // namespace
 
 const std::vector<std::string>& knob_names() {
-  static const std::vector<std::string> names = {
-      "samples",          "guidance", "selection",  "radius",
-      "points-per-pixel", "budget",   "image-size", "arithmetic", "width"};
+  static const std::vector<std::string> names = {"samples",    "guidance",         "selection",
+                                                 "radius",     "points-per-pixel", "budget",
+                                                 "image-size", "arithmetic",       "width"};
   return names;
 }
 

@@ -13,7 +13,8 @@
 namespace ps::apps {
 
 /// @brief Adds --lpips.
-/// @param of  what is scored with it, where that is not all: ", in the knobs samples, guidance and selection"
+/// @param of  what is scored with it, where that is not all: ", in the knobs samples, guidance and
+/// selection"
 void add_lpips_option(CLI::App& verb, std::string& lpips, const std::string& of = "");
 
 /// @brief What looks at pictures as people do, where its weights are given.

@@ -55,8 +55,8 @@ void warn_of(const Fused& fused, const Context& context) {
   };
   if (fused.study && fused.study->gave_up) {
     context.warn(
-        "the study gave up: half of the frames or more would have to be left out, and nobody can "
-        "tell which are right; none is left out and nothing is evened out");
+        "the study gave up: too many frames contradict each other for anybody to tell which are "
+        "right; none is left out and nothing is evened out");
   }
   warn(fused.refused(), "frame is left out, as the others contradict it: its pose must be wrong",
        "frames are left out, as the others contradict them: their poses must be wrong");

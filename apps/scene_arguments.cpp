@@ -36,8 +36,9 @@ void SceneArguments::add_sampling_options(CLI::App& verb) {
   verb.add_option("--temperature", temperature, "Of the sampling; 0 = always the likeliest code")
       ->type_name("T")
       ->check(in_range(0, 2));
-  verb.add_option("--guidance", guidance,
-                  "How much the sampling is held to the nearest seen colours; 0 = not, as published")
+  verb.add_option(
+          "--guidance", guidance,
+          "How much the sampling is held to the nearest seen colours; 0 = not, as published")
       ->type_name("W")
       ->check(in_range(0, 1000));
   verb.add_option(

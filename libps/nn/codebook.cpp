@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
-#include <numeric>
 #include <string>
 
 #include "libps/core/error.h"
@@ -45,6 +44,7 @@ Codebook::Codebook(const WeightTensor& embed) {
   }
   matrix_ =
       PackedMatrix(1, channels_, size_, [&](int, int c, int code) { return -2 * at(c, code); });
+  spacing_ = median_spacing();
 }
 
 template <typename Each>
@@ -84,21 +84,22 @@ void Codebook::excess(const TensorView& in, float* out) const {
   });
 }
 
-float Codebook::spacing() const {
+float Codebook::median_spacing() {
   const auto width = static_cast<std::size_t>(size_);
   if (width < 2) return 0;
-  std::vector<float> vectors = vectors_;
-  const auto channels = static_cast<std::size_t>(channels_);
-  std::vector<double> nearest(width);
-  for_scores({vectors.data(), {1, 1, size_, channels_}, channels},
-             [&](std::size_t code, const float* scores) {
-               float least = std::numeric_limits<float>::infinity();
-               for (std::size_t k = 0; k < width; ++k) {
-                 if (k != code) least = std::min(least, scores[k]);
-               }
-               nearest[code] = std::max(0.0, static_cast<double>(least) + squares_[code]);
-             });
-  return static_cast<float>(std::accumulate(nearest.begin(), nearest.end(), 0.0) / size_);
+  std::vector<float> nearest(width);
+  const TensorView codes = {
+      vectors_.data(), {1, 1, size_, channels_}, static_cast<std::size_t>(channels_)};
+  for_scores(codes, [&](std::size_t code, const float* scores) {
+    float least = std::numeric_limits<float>::infinity();
+    for (std::size_t k = 0; k < width; ++k) {
+      if (k != code) least = std::min(least, scores[k]);
+    }
+    nearest[code] = std::max(0.f, least + squares_[code]);
+  });
+  const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(width / 2);
+  std::nth_element(nearest.begin(), middle, nearest.end());
+  return *middle;
 }
 
 void Codebook::embed(const std::int32_t* codes, const TensorView& out) const {

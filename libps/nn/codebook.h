@@ -27,8 +27,9 @@ class Codebook {
   /// @param out  in.shape.pixels() x size() values
   void excess(const TensorView& in, float* out) const;
 
-  /// The mean, over all codes, of the squared distance to the nearest other; 0 for a single code.
-  float spacing() const;
+  /// The median, over all codes, of the squared distance to the nearest other (codes that training
+  /// left far out do not move it); 0 for a single code.
+  float spacing() const { return spacing_; }
 
   /// @brief The embeddings of codes. Throws ps::Error when a code is not in [0, size()).
   void embed(const std::int32_t* codes, const TensorView& out) const;
@@ -37,10 +38,12 @@ class Codebook {
   /// Calls each(pixel, |e_k|^2 - 2 x.e_k of every k) for every pixel, from any thread.
   template <typename Each>
   void for_scores(const TensorView& in, const Each& each) const;
+  float median_spacing();
 
   int size_ = 0, channels_ = 0;
   std::vector<float> vectors_;  ///< [codes][channels]
   std::vector<float> squares_;  ///< |e_k|^2
+  float spacing_ = 0;
   PackedMatrix matrix_;
 };
 

@@ -81,8 +81,8 @@ struct Outpainter::View {
   ViewPictures& pictures;
   Work work;
   Progress progress;
-  int samples;     ///< to be drawn at most
-  int shown = -1;  ///< the completion whose refined picture there is
+  int samples;                       ///< to be drawn at most
+  int shown = -1;                    ///< the completion whose refined picture there is
   std::vector<float> guidance = {};  ///< see SampleOptions
   std::vector<Completion> completions = {};
   std::vector<Signal> signals = {};
@@ -120,7 +120,13 @@ void Outpainter::guide(View& view, const nn::TensorView& pre_quant) {
   view.guidance.resize(pre_quant.shape.pixels() * static_cast<std::size_t>(codebook.size()));
   codebook.excess(pre_quant, view.guidance.data());
   const auto scale = static_cast<float>(-view.options.guidance / spacing);
-  for (float& logit : view.guidance) logit *= scale;
+  for (float& logit : view.guidance) {
+    logit *= scale;
+    if (!std::isfinite(logit)) {
+      throw Error("outpainter", "the encoding of what is seen is not finite",
+                  "finite numbers: the autoencoder's weights overflow");
+    }
+  }
 }
 
 void Outpainter::sample(View& view, Sampler& sampler, int count) {

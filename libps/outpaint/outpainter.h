@@ -40,12 +40,12 @@ struct OutpaintOptions {
   /// Encode the projection with the nearest colours where it is missing, so that the codes of cells
   /// that are seen in part continue what is seen. false, as published: missing pixels are grey.
   bool encode_nearest = true;
-  /// How much what is drawn is held to the nearest seen colours: the logit of a code falls by
-  /// guidance x (how much farther it is from their encoding than the nearest code is, in squared
-  /// distance) / (the same from a code to its nearest other, on the average). 0, as published: not
-  /// at all; up to 1000.
+  /// How much what is drawn is held to the nearest seen colours: before temperature divides it, the
+  /// logit of a code falls by guidance x (how much farther the code is from their encoding than the
+  /// nearest code is, in squared distance) / nn::Codebook::spacing(). 0, as published: not at all;
+  /// up to 1000.
   double guidance = kGuidance;
-  static constexpr double kGuidance = 2;
+  static constexpr double kGuidance = 1;
   /// Decode and refine for each completion only what it can change; false: whole pictures.
   bool region = true;
   /// Told what share of the view is done, from 0 to 1 and never falling, in all stages: one call at

@@ -218,7 +218,8 @@ class Sampler::Impl {
     check_finite(cell, completion, logits);
     const float* choice = logits;
     if (options.guidance) {
-      const float* add = options.guidance + static_cast<std::size_t>(cell) * static_cast<std::size_t>(codes);
+      const float* add =
+          options.guidance + static_cast<std::size_t>(cell) * static_cast<std::size_t>(codes);
       guided.resize(static_cast<std::size_t>(codes));
       std::transform(logits, logits + codes, add, guided.begin(), std::plus<>());
       choice = guided.data();

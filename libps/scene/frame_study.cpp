@@ -22,10 +22,16 @@ constexpr double kEvener = .6;             ///< of the spread is left where scal
 constexpr double kTolerancePerSpread = 2;  ///< of fusing, and at most:
 constexpr double kMostTolerance = .15;
 constexpr double kAnchor = 1e-3;  ///< of unknowns to 0, in pairs
-/// Which of a frame's pairs, the best first, speaks for it: while less than half of the frames are
-/// lost, a good frame has so many good partners.
-constexpr double kSpeaking = .4;
-constexpr double kUsual = .3;  ///< which frame is the usual one, the best first
+
+/// Who is listened to when a frame is judged.
+struct Jury {
+  double pair;   ///< which of a frame's pairs speaks for it, the best first
+  double usual;  ///< which frame is the usual one, the best first
+};
+/// First those of frames lost each for itself, as a good one still has so many good partners where
+/// nearly half of the frames are lost; then frames lost together, which agree with their
+/// neighbours.
+constexpr Jury kJuries[] = {{.4, .3}, {.5, .5}};
 
 /// @return the value with such a share of the others before it, in rising order; NaN of none
 double at_share(std::vector<double> values, double share) {
@@ -60,7 +66,7 @@ Eigen::VectorXd evened(std::size_t count, const std::vector<FramePair>& pairs,
 /// The share of what a pair contradicts, of the pair that speaks for each frame, without pairs of
 /// refused frames; NaN without a pair.
 std::vector<double> contradictions(const std::vector<FramePair>& pairs,
-                                   const std::vector<FrameWord>& words) {
+                                   const std::vector<FrameWord>& words, const Jury& jury) {
   std::vector<std::vector<double>> shares(words.size());
   for (const FramePair& pair : pairs) {
     const std::size_t seen = pair.agree + pair.before;
@@ -70,13 +76,13 @@ std::vector<double> contradictions(const std::vector<FramePair>& pairs,
     if (!words[pair.a].refused) shares[pair.b].push_back(share);
   }
   std::vector<double> spoken;
-  for (std::vector<double>& some : shares) spoken.push_back(at_share(std::move(some), kSpeaking));
+  for (std::vector<double>& some : shares) spoken.push_back(at_share(std::move(some), jury.pair));
   return spoken;
 }
 
 /// @return the frame to be refused next, or as many as there are frames: none
 std::size_t worst_of(const std::vector<double>& shares, const std::vector<FrameWord>& words,
-                     double contradicted) {
+                     double contradicted, const Jury& jury) {
   std::vector<double> usual;
   std::size_t worst = shares.size();
   for (std::size_t i = 0; i < shares.size(); ++i) {
@@ -85,8 +91,16 @@ std::size_t worst_of(const std::vector<double>& shares, const std::vector<FrameW
     if (worst == shares.size() || shares[i] > shares[worst]) worst = i;
   }
   if (usual.empty()) return shares.size();
-  const double most = std::max(contradicted, 3 * at_share(std::move(usual), kUsual));
+  const double most = std::max(contradicted, 3 * at_share(std::move(usual), jury.usual));
   return shares[worst] > most ? worst : shares.size();
+}
+
+/// Each frame's share of what is contradicted, by the last jury.
+void tell_contradictions(const std::vector<FramePair>& pairs, std::vector<FrameWord>* words) {
+  const std::vector<double> shares = contradictions(pairs, *words, kJuries[1]);
+  for (std::size_t i = 0; i < words->size(); ++i) {
+    (*words)[i].contradicted = std::isnan(shares[i]) ? 0 : shares[i];
+  }
 }
 
 /// Refuses the worst frame, then the worst of what is left, and so on; none at all if that comes to
@@ -94,24 +108,25 @@ std::size_t worst_of(const std::vector<double>& shares, const std::vector<FrameW
 void refuse(const std::vector<FramePair>& pairs, const FrameStudyOptions& options,
             FrameStudy* study) {
   std::vector<FrameWord>& words = study->words;
-  std::vector<double> shares = contradictions(pairs, words);
-  const auto held = static_cast<std::size_t>(
-      std::count_if(shares.begin(), shares.end(), [](double x) { return !std::isnan(x); }));
-  for (std::size_t refused = 0; options.refuse; ++refused) {
-    const std::size_t worst = worst_of(shares, words, options.contradicted);
-    if (worst == words.size()) break;
-    study->gave_up = 2 * (refused + 1) >= held;
-    if (study->gave_up) {
-      for (FrameWord& word : words) word.refused = false;
-      shares = contradictions(pairs, words);
-      break;
+  const auto refused = [&] {
+    return std::count_if(words.begin(), words.end(), [](const FrameWord& w) { return w.refused; });
+  };
+  const std::vector<double> all = contradictions(pairs, words, kJuries[0]);
+  const auto held = std::count_if(all.begin(), all.end(), [](double x) { return !std::isnan(x); });
+  study->gave_up = false;
+  for (const Jury& jury : kJuries) {
+    while (options.refuse && !study->gave_up) {
+      const std::size_t worst =
+          worst_of(contradictions(pairs, words, jury), words, options.contradicted, jury);
+      if (worst == words.size()) break;
+      words[worst].refused = true;
+      study->gave_up = 2 * refused() >= held;
     }
-    words[worst].refused = true;
-    shares = contradictions(pairs, words);
   }
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    words[i].contradicted = std::isnan(shares[i]) ? 0 : shares[i];
+  if (study->gave_up) {
+    for (FrameWord& word : words) word.refused = false;
   }
+  tell_contradictions(pairs, &words);
 }
 
 void even_colors(const std::vector<FramePair>& pairs, std::vector<FrameWord>* words) {
@@ -156,33 +171,35 @@ void even_scales(const std::vector<SmallFrame>& frames, std::vector<FramePair>* 
 bool at_odds(const std::vector<SmallFrame>& frames, const FrameStudyOptions& options,
              std::vector<FramePair> pairs, const FrameStudy& study) {
   hold_against_each_other(frames, study.words, options.tolerance, &pairs);
-  std::vector<double> shares = contradictions(pairs, study.words);
+  std::vector<double> shares = contradictions(pairs, study.words, kJuries[0]);
   shares.erase(std::remove_if(shares.begin(), shares.end(), [](double x) { return std::isnan(x); }),
                shares.end());
   return at_share(std::move(shares), .5) > options.contradicted;
 }
 
-/// Of frames in camps that differ in scale alone: evens that out, and judges them again.
-void try_scales_first(const std::vector<SmallFrame>& frames, const FrameStudyOptions& options,
-                      std::vector<FramePair> pairs, FrameStudy* study) {
+/// Judges frames again that perhaps are in camps which differ in scale alone, as if that were
+/// evened out. Scales stay as they are: they are found when it is known which frames stay.
+void judge_by_even_scales(const std::vector<SmallFrame>& frames, const FrameStudyOptions& options,
+                          std::vector<FramePair> pairs, FrameStudy* study) {
   FrameStudy evened = *study;
-  evened.gave_up = false;
   hold_against_each_other(frames, evened.words, kWideTolerance, &pairs);
   evened.spread = spread_of(pairs);
   even_scales(frames, &pairs, &evened);
   hold_against_each_other(frames, evened.words, options.tolerance, &pairs);
   refuse(pairs, options, &evened);
+  for (FrameWord& word : evened.words) word.scale = 1;
+  evened.spread = 0;
   if (!evened.gave_up) *study = std::move(evened);
 }
 
-/// The study without any of its advice.
-FrameStudy without_advice(const FrameStudy& study) {
+/// A study that gave up: it says how much the frames contradict each other, and advises nothing.
+FrameStudy without_advice(const std::vector<SmallFrame>& frames, const FrameStudyOptions& options,
+                          std::vector<FramePair> pairs) {
   FrameStudy silent;
-  for (const FrameWord& word : study.words) {
-    silent.words.emplace_back();
-    silent.words.back().contradicted = word.contradicted;
-  }
   silent.gave_up = true;
+  silent.words.resize(frames.size());
+  hold_against_each_other(frames, silent.words, options.tolerance, &pairs);
+  tell_contradictions(pairs, &silent.words);
   return silent;
 }
 
@@ -199,11 +216,12 @@ FrameStudy study_frames(const ViewSource& source, const FrameStudyOptions& optio
   }
   FrameStudy study;
   study.words.resize(source.count);
-  std::vector<FramePair> pairs = plan_pairs(frames, options.partners);
+  const std::vector<FramePair> planned = plan_pairs(frames, options.partners);
+  std::vector<FramePair> pairs = planned;
   hold_against_each_other(frames, study.words, options.tolerance, &pairs);
   refuse(pairs, options, &study);
-  if (study.gave_up && options.scales) try_scales_first(frames, options, pairs, &study);
-  if (study.gave_up) return without_advice(study);
+  if (study.gave_up && options.scales) judge_by_even_scales(frames, options, pairs, &study);
+  if (study.gave_up) return without_advice(frames, options, planned);
   const auto out = [&](const FramePair& p) {
     return study.words[p.a].refused || study.words[p.b].refused;
   };
@@ -211,7 +229,9 @@ FrameStudy study_frames(const ViewSource& source, const FrameStudyOptions& optio
   hold_against_each_other(frames, study.words, kWideTolerance, &pairs);
   study.spread = spread_of(pairs);
   if (options.scales) even_scales(frames, &pairs, &study);
-  if (options.refuse && at_odds(frames, options, pairs, study)) return without_advice(study);
+  if (options.refuse && at_odds(frames, options, pairs, study)) {
+    return without_advice(frames, options, planned);
+  }
   if (options.gains) even_colors(pairs, &study.words);
   return study;
 }

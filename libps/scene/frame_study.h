@@ -16,11 +16,14 @@ struct FrameStudyOptions {
   /// Two depths along a ray contradict each other when they differ by more than this share beyond
   /// all depths around the pixel.
   double tolerance = 0.08;
-  /// A frame is left out when in the pair that speaks for it (two fifths of its pairs are better)
-  /// more than this share of what both see is contradicted, and more than three times what is usual
-  /// among the frames with a pair: the worst first, then the worst of the others. None is, if that
-  /// would be half of those with a pair, or if more than this share is still contradicted in the
-  /// middle one of the frames that are left: the study gives up then.
+  /// A frame is left out when in the pair that speaks for it more than this share of what both see
+  /// is contradicted, and more than three times what is usual among the frames with a pair: the
+  /// worst first, then the worst of the others. First the pair speaks that is worse than about two
+  /// fifths of a frame's pairs, and usual is the frame worse than three tenths: that finds frames
+  /// lost each for itself, up to nearly half. Then both are those in the middle: that finds frames
+  /// lost together, which agree with their neighbours. None is left out, if that would be half of
+  /// those with a pair, or if more than this share is still contradicted in the middle one of the
+  /// frames that are left: the study gives up then.
   double contradicted = 0.15;
 };
 
@@ -28,7 +31,7 @@ struct FrameStudyOptions {
 struct FrameWord {
   cv::Vec3f gain = {1, 1, 1};  ///< its colours times this are as bright as the others'
   double scale = 1;            ///< its depths times this agree with the others'
-  double contradicted = 0;     ///< share, in the pair that speaks for it; 0 without a pair
+  double contradicted = 0;     ///< share, in the middle one of its pairs; 0 without a pair
   bool refused = false;
 };
 

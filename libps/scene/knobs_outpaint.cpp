@@ -80,7 +80,7 @@ Knob samples_knob(const OutpaintKnobOptions& options) {
 Knob guidance_knob(const OutpaintKnobOptions& options) {
   Knob knob = {"guidance", "How much sampling is held to the nearest seen colours."};
   std::vector<OutpaintKnobOptions> settings;
-  for (const double guidance : {0.0, 0.5, 2.0, 8.0, 32.0}) {
+  for (const double guidance : {0.0, 0.25, 1.0, 4.0, 16.0}) {
     settings.push_back(options);
     settings.back().scene.outpaint.guidance = guidance;
     settings.back().networks.outpaint.scorers.clear();

@@ -51,7 +51,7 @@ class ViewMethod {
 /// - `ours`: the target is outpainted and added to the cloud, which is rendered (view_renderer.h);
 /// - `one-completion`: the same with one sample; `by-likelihood`, `by-classifier`,
 ///   `by-discriminator`: the same, of all samples the best in the eyes of this one alone;
-///   `by-both`: of classifier and discriminator, as published;
+///   `by-both`: of classifier and discriminator, the published selection;
 /// - `sequential`: the same through poses in between, 15 degrees or so apart, each added in turn;
 /// - `independent`: the outpainted picture as it is, beside the cloud;
 /// - `no-outpainter`: the refiner fills in (Wiles et al., SynSin, CVPR 2020);

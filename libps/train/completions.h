@@ -10,7 +10,7 @@ namespace ps::train {
 nn::Weights weights_of(const Parameters& parameters);
 
 /// @brief Completions of one view's codes by the program's own sampler (outpaint::Sampler, its
-/// default temperature, seed 0).
+/// default temperature, seed 0; without guidance).
 /// @param pixel_cnn  of PixelCnn
 /// @param codes      [h, w] int64, of what is seen
 /// @param order      [h * w] int64: cells from first to last

@@ -24,6 +24,13 @@ app_test(scene_seed_decides_what_is_invented [=[
   works --seed 1 scene $S/photo.png --fov 70 -o a --samples 1 --directions left
   works --seed 2 scene $S/photo.png --fov 70 -o b --samples 1 --directions left
   ! cmp -s a/scene.ply b/scene.ply || complain "the seed changes nothing"]=])
+app_test(scene_guidance_holds_what_is_invented_to_what_is_seen [=[
+  for g in 0 1 1000; do works scene $S/photo.png --fov 70 -o g$g --samples 1 --directions left --guidance $g; done
+  works scene $S/photo.png --fov 70 -o default --samples 1 --directions left
+  cmp default/scene.ply g1/scene.ply
+  ! cmp -s g0/scene.ply g1/scene.ply || complain "the guidance changes nothing"
+  ! cmp -s g1/scene.ply g1000/scene.ply || complain "more guidance changes nothing"
+  for g in -1 1001 x; do fails 2 'guidance' scene $S/photo.png -o t --guidance $g; done]=])
 app_test(scene_goes_on_after_an_interruption_to_the_same_bytes [=[
   args="$S/photo.png --fov 70 --samples 8 --directions left,right,up,down"
   works scene $args -o whole

@@ -93,10 +93,10 @@ TEST(Codebook, excess_is_the_squared_distance_beyond_the_nearest) {
   });
 }
 
-TEST(Codebook, spacing_is_the_mean_squared_distance_to_the_nearest_other) {
-  // In a plane: three in a row, 1 and 3 apart, and one that is there twice.
-  const WeightTensor embed = {{2, 5}, {0, 1, 4, 9, 9, 0, 0, 0, 7, 7}};
-  EXPECT_NEAR(Codebook(embed).spacing(), (1.0 + 1 + 9 + 0 + 0) / 5, 1e-5);
+TEST(Codebook, spacing_is_the_median_squared_distance_to_the_nearest_other) {
+  // On a line: 0, 2, 5, 9, 14, so that the nearest other is 2, 2, 3, 4, 5 away.
+  const WeightTensor embed = {{2, 5}, {0, 2, 5, 9, 14, 7, 7, 7, 7, 7}};
+  EXPECT_NEAR(Codebook(embed).spacing(), 9, 1e-4);
   EXPECT_EQ(Codebook({{3, 1}, {1, 2, 3}}).spacing(), 0);
 }
 

@@ -70,6 +70,51 @@ TEST_F(OutpainterOfRandomWeights, guidance_holds_completions_to_the_nearest_seen
   EXPECT_GE(all, nearest.size() - 1);  // two codes may be as near
 }
 
+/// Against the rule as it is written, distance by distance.
+TEST_F(OutpainterOfRandomWeights, guidance_falls_with_the_squared_distance_in_spacings) {
+  const nn::Tensor whole = with_nearest_colors(projection_.view(), background_);
+  nn::Tensor seen(autoencoder_.grid(whole.shape()));
+  autoencoder_.encode(whole, seen, workspace_);
+  std::vector<std::int32_t> all(static_cast<std::size_t>(autoencoder_.codes()));
+  std::iota(all.begin(), all.end(), 0);
+  nn::Tensor vectors({1, 1, autoencoder_.codes(), autoencoder_.channels()});
+  autoencoder_.codebook().embed(all.data(), vectors);
+  const auto squared = [&](const float* a, const float* b) {
+    double sum = 0;
+    for (int c = 0; c < autoencoder_.channels(); ++c) sum += std::pow(double{a[c]} - b[c], 2);
+    return sum;
+  };
+  std::vector<double> spacings;
+  for (const auto k : all) {
+    double least = 1e9;
+    for (const auto other : all) {
+      const auto i = static_cast<std::size_t>(k), j = static_cast<std::size_t>(other);
+      if (i != j)
+        least = std::min(least, squared(vectors.view().pixel(i), vectors.view().pixel(j)));
+    }
+    spacings.push_back(least);
+  }
+  std::sort(spacings.begin(), spacings.end());
+  constexpr double kGuidance = 2;
+  std::vector<float> guidance;
+  for (std::size_t cell = 0; cell < seen.shape().pixels(); ++cell) {
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const double far = squared(seen.view().pixel(cell), vectors.view().pixel(k));
+      guidance.push_back(static_cast<float>(-kGuidance * far / spacings[spacings.size() / 2]));
+    }
+  }
+  SampleOptions sampling;
+  sampling.temperature = 1;
+  sampling.guidance = guidance.data();
+  const auto expected =
+      Sampler(pixel_cnn_, order_of(background_), known_codes()).sample(0, 1, sampling)[0].codes;
+  OutpaintOptions options;
+  options.samples = 1;
+  options.temperature = 1;
+  options.guidance = kGuidance;
+  EXPECT_EQ(outpainter({}).run(projection_, background_, options).codes, expected);
+}
+
 TEST_F(OutpainterOfRandomWeights, guidance_has_nothing_to_hold_to_where_nothing_is_seen) {
   background_ = 1;
   std::fill_n(projection_.data(), projection_.shape().pixels() * 3, 0.f);
@@ -116,8 +161,10 @@ TEST_F(OutpainterOfRandomWeights, options_out_of_range_throw_even_where_nothing_
   options.samples = 1001;
   EXPECT_NE(message(options).find("1 to 1000"), std::string::npos);
   options = {};
-  options.guidance = -1;
-  EXPECT_NE(message(options).find("guidance"), std::string::npos);
+  for (const double guidance : {-1.0, 1001.0, std::nan("")}) {
+    options.guidance = guidance;
+    EXPECT_NE(message(options).find("guidance"), std::string::npos) << guidance;
+  }
   options = {};
   options.refine_best = -1;
   EXPECT_NE(message(options).find("completions to refine"), std::string::npos);

@@ -143,7 +143,8 @@ TEST(Sampler, keeps_what_is_known_and_draws_different_completions) {
   EXPECT_NE(Sampler(network, order, codes).sample(0, 1, options)[0].codes, completions[0].codes);
 }
 
-/// One missing cell: what is drawn follows softmax(logits / T).
+/// One missing cell: what is drawn follows softmax((logits + guidance) / T), and what is told of
+/// the logits is without the guidance.
 TEST(Sampler, draws_follow_the_softmax_at_every_temperature) {
   std::mt19937 random(5);
   const PixelCnn network = small_network();
@@ -151,11 +152,17 @@ TEST(Sampler, draws_follow_the_softmax_at_every_temperature) {
   missing[4] = 1;
   const Order order = order_from(3, 3, {0, 1, 2, 3, 5, 6, 7, 8, 4}, missing);
   const auto codes = random_codes(random, 9, network.codes());
-  for (const double temperature : {0.5, 1.0, 2.0}) {
+  std::vector<float> guidance(9 * static_cast<std::size_t>(network.codes()));
+  for (float& g : guidance) g = std::uniform_real_distribution<float>(-1, 0)(random);
+  const auto width = static_cast<std::size_t>(network.codes());
+  std::vector<float> alone;
+  for (const auto& [temperature, share_of_guidance] :
+       {std::pair(0.5, 0), {1.0, 0}, {2.0, 0}, {0.5, 1}, {2.0, 1}}) {
     constexpr int kDraws = 20000;
     Logits logits;
     SampleOptions options;
     options.temperature = temperature;
+    if (share_of_guidance > 0) options.guidance = guidance.data();
     options.observe = logits.observer(network.codes());
     std::vector<double> share(static_cast<std::size_t>(network.codes()), 0), expected = share;
     for (const Completion& completion : Sampler(network, order, codes).sample(0, kDraws, options)) {
@@ -163,16 +170,18 @@ TEST(Sampler, draws_follow_the_softmax_at_every_temperature) {
     }
     double sum = 0;
     for (std::size_t k = 0; k < share.size(); ++k) {
-      expected[k] = std::exp(logits.of(4)[k] / temperature);
+      expected[k] =
+          std::exp((logits.of(4)[k] + share_of_guidance * guidance[4 * width + k]) / temperature);
       sum += expected[k];
     }
     for (std::size_t k = 0; k < share.size(); ++k) EXPECT_NEAR(share[k], expected[k] / sum, 0.015);
+    const std::vector<float> told = logits.of(4);
+    if (alone.empty()) alone = told;
+    EXPECT_EQ(told, alone);
   }
 }
 
-/// Guidance that shifts all logits by the differences of another distribution draws that one; what
-/// is said of the completion stays the network's opinion.
-TEST(Sampler, guidance_is_added_to_the_logits_of_what_is_drawn_alone) {
+TEST(Sampler, log_likelihood_of_what_guidance_chose_is_the_networks_opinion) {
   std::mt19937 random(8);
   const PixelCnn network = small_network();
   const Order order = random_order(random, 8, 8, 0.6);

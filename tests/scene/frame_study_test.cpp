@@ -99,6 +99,38 @@ TEST(FrameStudy, two_fifths_of_the_frames_may_be_lost) {
   }
 }
 
+/// As where tracking jumps: they agree with each other.
+TEST(FrameStudy, frames_lost_together_at_an_end_are_refused) {
+  std::vector<View> views;
+  for (const Pose& pose : box_world_walk(40)) views.push_back(box_world_view(kCamera, pose));
+  const Pose jump =
+      Eigen::Translation3d(0, 0, -.8) * Pose(Eigen::AngleAxisd(.5, Eigen::Vector3d::UnitY()));
+  for (std::size_t i = 0; i < 6; ++i) views[i].world_from_cam = jump * views[i].world_from_cam;
+  const FrameStudy study = study_frames(source_of(views));
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    EXPECT_EQ(study.words[i].refused, i < 6) << i << ": " << study.words[i].contradicted;
+  }
+}
+
+TEST(FrameStudy, camps_that_differ_in_scale_alone_are_evened_out) {
+  std::vector<View> views = frames();
+  const double scales[] = {.85, 1, 1.18};
+  for (std::size_t i = 0; i < views.size(); ++i) views[i].depth *= scales[i % 3];
+  FrameStudyOptions options;
+  options.scales = false;
+  EXPECT_TRUE(study_frames(source_of(views), options).gave_up);
+  options.scales = true;
+  const FrameStudy study = study_frames(source_of(views), options);
+  EXPECT_FALSE(study.gave_up);
+  double sum = 0;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    EXPECT_FALSE(study.words[i].refused);
+    sum += std::log(study.words[i].scale);
+    EXPECT_NEAR(study.words[i].scale * scales[i % 3], study.words[0].scale * scales[0], .03) << i;
+  }
+  EXPECT_NEAR(sum, 0, 1e-6) << "on the average they stay";
+}
+
 TEST(FrameStudy, says_nothing_where_nearly_all_frames_are_lost) {
   std::vector<View> views = frames();
   for (int i = 0; i < 8; ++i) lose(&views[static_cast<std::size_t>(i)], i);
@@ -108,6 +140,7 @@ TEST(FrameStudy, says_nothing_where_nearly_all_frames_are_lost) {
   for (const FrameWord& word : study.words) {
     EXPECT_FALSE(word.refused);
     EXPECT_EQ(word.scale, 1);
+    EXPECT_GT(word.contradicted, .1) << "of all pairs";
   }
 }
 

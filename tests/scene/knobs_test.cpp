@@ -131,6 +131,14 @@ TEST(Knobs, of_outpainting_score_what_the_input_does_not_see) {
   }
 }
 
+TEST(Knobs, guidance_changes_what_is_outpainted) {
+  const Networks networks;
+  const auto trials = trials_of(guidance_knob(networks.options()), tiny_room());
+  for (std::size_t s = 1; s < trials.size(); ++s) {
+    EXPECT_GT(cv::norm(trials[s].picture, trials[0].picture, cv::NORM_INF), 1e-3) << s;
+  }
+}
+
 TEST(Knobs, of_width_score_the_depth_of_the_input) {
   const Networks networks;
   const Knob knob = width_knob({{"a", &networks.depth, {}, true}, {"b", &networks.depth, {}}});
