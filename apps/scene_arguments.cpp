@@ -31,7 +31,7 @@ void SceneArguments::add_view_options(CLI::App& verb) {
 void SceneArguments::add_sampling_options(CLI::App& verb) {
   verb.add_option("--samples", samples,
                   "Completions drawn for each outpainted view, the best is kept: 1 to 1000, or "
-                  "auto = until more would not help, 50 at most")
+                  "auto = until more would not help, 50 at most (default; 50 with --refine-best)")
       ->type_name("N|auto");
   verb.add_option("--temperature", temperature, "Of the sampling; 0 = always the likeliest code")
       ->type_name("T")
@@ -171,13 +171,14 @@ SceneOptions SceneArguments::scene(const Context& context) const {
   SceneOptions options;
   options.cloud.lift = input.lift;
   outpaint::OutpaintOptions& o = options.outpaint;
-  if (samples == "auto") {
+  const std::string number = samples.value_or(refine_best > 0 ? "50" : "auto");
+  if (number == "auto") {
     o.until_settled = true;
   } else {
     char* end = nullptr;
-    const long count = std::strtol(samples.c_str(), &end, 10);
-    if (samples.empty() || *end != '\0' || count < 1 || count > 1000) {
-      throw CLI::ValidationError("--samples", "'" + samples + "'; expected 1 to 1000, or auto");
+    const long count = std::strtol(number.c_str(), &end, 10);
+    if (number.empty() || *end != '\0' || count < 1 || count > 1000) {
+      throw CLI::ValidationError("--samples", "'" + number + "'; expected 1 to 1000, or auto");
     }
     o.samples = static_cast<int>(count);
   }

@@ -28,7 +28,7 @@ struct SceneArguments {
   std::string strategy = "support";
   int views_per_direction = 2;
 
-  std::string samples = "50";
+  std::optional<std::string> samples;  ///< 1 to 1000 or auto; not given = auto where it may be
   double temperature = 0.5;
   double guidance = outpaint::OutpaintOptions::kGuidance;
   int refine_best = 0;

@@ -71,9 +71,12 @@ Knob samples_knob(const OutpaintKnobOptions& options) {
     settings.push_back(options);
     settings.back().scene.outpaint.samples = samples;
     settings.back().networks.outpaint.scorers.clear();
-    knob.settings.push_back(
-        {std::to_string(samples), samples == outpaint::OutpaintOptions().samples});
+    knob.settings.push_back({std::to_string(samples), false});
   }
+  settings.push_back(settings.back());
+  settings.back().scene.outpaint.samples = outpaint::OutpaintOptions().samples;
+  settings.back().scene.outpaint.until_settled = true;
+  knob.settings.push_back({"auto", true});
   return outpaint_knob(std::move(knob), settings);
 }
 
