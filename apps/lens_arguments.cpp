@@ -24,7 +24,7 @@ void LensArguments::add_to(CLI::App& verb) {
 PhotoLens choose_lens(const LensArguments& arguments, const Photo& photo, const std::string& name,
                       const Context& context) {
   constexpr double kDefaultFov = 60;
-  const int width = photo.color.cols, height = photo.color.rows;
+  const auto [width, height] = photo.size;
   if (!arguments.intrinsics.empty()) {
     return {read_intrinsics(arguments.intrinsics, width, height), "--intrinsics"};
   }

@@ -10,6 +10,7 @@
 #include <set>
 #include <system_error>
 
+#include "io/atomic_file.h"
 #include "libps/core/error.h"
 
 namespace fs = std::filesystem;
@@ -143,6 +144,9 @@ void OutputFolder::write(const std::string& name,
            [this](const fs::path& path) { return shown(path); });
   try {
     task(file);
+  } catch (const WriteError& error) {
+    if (error.file() != file.string()) throw;
+    throw WriteError(shown(file), error.why());
   } catch (const Error& error) {
     const std::string message = error.what(), where = file.string() + ": ";
     if (message.rfind(where, 0) != 0) throw;

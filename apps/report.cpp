@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/report.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include <system_error>
 #include <vector>
 
+#include "apps/peak_memory.h"
 #include "io/atomic_file.h"
 #include "libps/core/error.h"
 #include "libps/core/parallel.h"
@@ -42,13 +41,6 @@ std::string full_name(const CLI::App& verb) {
   const CLI::App* group = verb.get_parent();
   const bool nested = group != nullptr && group->get_parent() != nullptr;
   return (nested ? group->get_name() + " " : "") + verb.get_name();
-}
-
-/// The most memory this process has held so far.
-double peak_memory_mib() {
-  rusage usage = {};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
 /// @param where  for the message

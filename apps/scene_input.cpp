@@ -33,6 +33,9 @@ const Pose kPhotoPose = [] {
   return pose;
 }();
 
+/// Pixels along a photo's short side that are always kept: twice what the depth network sees.
+constexpr int kShortest = 512;
+
 std::string text_of(cv::Size size) {
   return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
@@ -72,23 +75,37 @@ Json report_of(const FilledHoles& filled) {
   return report;
 }
 
+/// The photo's depth at the size of its colours.
+Depth depth_at(const Photo& photo, const std::string& file, double depth_scale,
+               const Context& context) {
+  Depth depth = read_depth_for(file, depth_scale, photo.size, context);
+  if (photo.size == photo.color.size()) return depth;
+  Depth small;
+  cv::resize(depth, small, photo.color.size(), 0, 0, cv::INTER_NEAREST_EXACT);
+  return small;
+}
+
 /// A photo with its depth; its pose is the scene's beginning.
+/// @param longest  pixels that are wanted along its long side
 View read_one(const SceneInputArguments& a, const std::string& file, const std::string& depth,
-              const DepthModel* model, const Context& context, Json& report) {
-  const Photo photo = read_photo(file);
+              const DepthModel* model, int longest, const Context& context, Json& report) {
+  const Photo photo = read_photo(file, {longest, kShortest});
   check_photo(photo.color, file);
   const PhotoLens lens = choose_lens(a.lens, photo, file, context);
   View view;
   view.world_from_cam = kPhotoPose;
   view.color = photo.color;
   view.intrinsics = lens.intrinsics;
+  if (photo.color.size() != photo.size) {
+    view.intrinsics = resized(lens.intrinsics, photo.color.cols, photo.color.rows);
+  }
   report["lens"] = to_json(lens);
   if (depth.empty()) {
     if (model == nullptr) throw Error(file, "its depth is not given", "--depth FILE");
-    view.depth = photo_depth(model->net, photo.color, lens.intrinsics, model->scale);
+    view.depth = photo_depth(model->net, photo.color, view.intrinsics, model->scale);
     report["depth"] = scale_report(*model, lens.intrinsics);
   } else {
-    view.depth = read_depth_for(depth, a.depth_scale, photo.color.size(), context);
+    view.depth = depth_at(photo, depth, a.depth_scale, context);
     report["depth"] = {{"from", depth}};
     check(view, file);
     if (model != nullptr) {
@@ -152,8 +169,8 @@ SceneInput read_frames(const SceneInputArguments& a, const Context& context) {
 
 /// The second photo, placed where it was taken, its depth on the first one's scale.
 View read_second(const SceneInputArguments& a, const View& first, const DepthModel* model,
-                 const Context& context, Json& report) {
-  View second = read_one(a, a.second, a.second_depth, model, context, report);
+                 int longest, const Context& context, Json& report) {
+  View second = read_one(a, a.second, a.second_depth, model, longest, context, report);
   if (a.second_pose == "auto") {
     const SecondPose found = find_second_pose(first, second.color, second.intrinsics, second.depth);
     second.world_from_cam = found.world_from_cam;
@@ -263,11 +280,11 @@ SceneInput read_scene_input(const SceneInputArguments& a, const DepthModel* mode
                                "goes with a folder of frames, not with a photo");
   }
   SceneInput input;
-  const View photo = read_one(a, a.photo, a.depth, model, context, input.report);
+  const View photo = read_one(a, a.photo, a.depth, model, longest, context, input.report);
   std::vector<View> views = {shrunk(photo, longest, input.report)};
   if (!a.second.empty()) {
     Json report;
-    const View second = read_second(a, photo, model, context, report);
+    const View second = read_second(a, photo, model, longest, context, report);
     views.push_back(shrunk(second, longest, report));
     input.report["second"] = report;
   }

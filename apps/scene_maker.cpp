@@ -46,7 +46,7 @@ void SceneMaker::load_networks() {
   } else if (a_.input.needs_estimate()) {
     depth_ = std::make_unique<DepthModel>(load_depth_model(depth_weights(a_.weights), context_));
   }
-  report_["seconds"]["load_networks"] = watch.seconds();
+  end_stage(report_, "load_networks", watch);
 }
 
 void SceneMaker::make_plan() {
@@ -103,7 +103,7 @@ void SceneMaker::observe() {
   if (cloud_.empty()) {
     throw Error(a_.input.photo, "no pixel can be lifted", "depth in the range asked for");
   }
-  report_["seconds"]["observe"] = watch.seconds();
+  end_stage(report_, "observe", watch);
 }
 
 SupportView SceneMaker::outpaint(const ViewPlan& view, std::uint16_t number) {
@@ -144,7 +144,7 @@ void SceneMaker::outpaint_all() {
   }
   bar_.reset();
   cloud_ = scene_->cloud();
-  report_["seconds"]["outpaint"] = watch.seconds();
+  end_stage(report_, "outpaint", watch);
 }
 
 void SceneMaker::make() {
@@ -153,7 +153,7 @@ void SceneMaker::make() {
   const DepthModel* depth = models_ ? &models_->depth() : depth_.get();
   input_ = read_scene_input(a_.input, depth, kFinest * a_.view_size, context_);
   report_.update(input_.report);
-  report_["seconds"]["read_input"] = watch.seconds();
+  end_stage(report_, "read_input", watch);
   make_plan();
   if (plan_.size() + input_.count > 65536) {
     throw Error("scene", "there are more than 65536 views", "fewer frames or support views");
@@ -193,7 +193,7 @@ void SceneMaker::keep_to_budget(const std::vector<PlannedView>& views) {
                   ", as observed and outpainted ones are not merged, nor what lies far apart or is "
                   "seen by no view");
   }
-  report_["seconds"]["budget"] = watch.seconds();
+  end_stage(report_, "budget", watch);
   throw_if_interrupted();
 }
 

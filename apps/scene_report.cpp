@@ -3,6 +3,8 @@
 
 #include <fstream>
 
+#include "apps/peak_memory.h"
+
 namespace ps::apps {
 namespace {
 
@@ -20,6 +22,11 @@ void append_names(const Json& entries, const char* key, const std::string& befor
 }
 
 }  // namespace
+
+void end_stage(Json& report, const std::string& stage, const Stopwatch& watch) {
+  report["seconds"][stage] = watch.seconds();
+  report["peak_memory_mib_after"][stage] = peak_memory_mib();
+}
 
 Json to_json(const AddReport& r) {
   return {{"lifted", r.lifted},

@@ -10,6 +10,10 @@
 
 namespace ps::apps {
 
+/// @brief Adds to a report what a stage took: seconds.STAGE, and peak_memory_mib_after.STAGE, the
+/// most memory that the process had held by its end.
+void end_stage(Json& report, const std::string& stage, const Stopwatch& watch);
+
 /// @brief What a report says of one outpainted view.
 /// @param samples  completions that were asked for at most
 Json to_json(const std::string& name, const SupportReport& report, int samples);

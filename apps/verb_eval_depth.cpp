@@ -77,6 +77,7 @@ ScoreTable measure(const ChosenFrames& frames, const DepthModel& model, const Co
       add("ours", photo_depth(model.net, view.color, view.intrinsics, model.scale));
       add("constant", baselines.constant(view.depth.size()));
       add("row ramp", baselines.ramp(view.depth.size()));
+      add("mean", baselines.mean(view.depth));
     }
     progress.update(i + 1);
   }
@@ -109,9 +110,8 @@ void add_eval_depth(CLI::App& eval, const Context& context) {
           "Scores estimated depth against true depth: AbsRel, RMSE and delta_1 to delta_3 (shares "
           "within 1.25, 1.25^2, 1.25^3), each image scaled to the true median, and raw. Beside it "
           "what "
-          "knows nothing of the photo: a constant, and a ramp by rows, both learnt from the very "
-          "depths "
-          "that are scored.") +
+          "knows nothing of the photo: a constant and a ramp by rows, both learnt from the very "
+          "depths that are scored, and at each place the mean of the other frames' depths.") +
           kIntervalsHelp);
   auto a = std::make_shared<EvalDepthArguments>();
   a->frames.add_to(*verb);

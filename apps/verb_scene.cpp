@@ -13,6 +13,7 @@
 #include "apps/progress.h"
 #include "apps/scene_maker.h"
 #include "apps/scene_report.h"
+#include "io/atomic_file.h"
 #include "io/cloud_file.h"
 #include "io/intrinsics_file.h"
 #include "io/photo.h"
@@ -200,13 +201,13 @@ void make_scene(const SceneArguments& a, const Json& settings, SceneMaker& scene
   Json report = summary_of(scene.cloud());
   report.update(scene.report());
   for (const Picture& picture : pictures) report["views"].push_back(picture.report);
-  report["seconds"]["views"] = watch.seconds();
+  end_stage(report, "views", watch);
   watch = Stopwatch();
   for (const std::string& path : a.paths) {
     report["videos"].push_back(write_path(a, scene, path, lens, renderer, folder, context));
   }
   write_scene(folder, scene, pictures, lens);
-  report["seconds"]["write"] = watch.seconds();
+  end_stage(report, "write", watch);
   add_costs(report, total);
   folder.write("settings.json", [&](const Path& file) { write_json(file, settings); });
   folder.write("report.json", [&](const Path& file) { write_json(file, report); });
@@ -225,6 +226,11 @@ void run_scene(const SceneArguments& a, const CLI::App& verb, const Context& con
   note_interrupts();
   try {
     make_scene(a, settings, scene, context);
+  } catch (const WriteError& error) {  // once there is room, the rest need not be done again
+    if (!scene.has_begun()) throw;
+    throw WriteError(error.file(), error.why(),
+                     "room for it; the same command with --resume goes on with what was "
+                     "outpainted so far");
   } catch (const Error&) {
     scene.finish();  // the same command would fail again
     throw;

@@ -37,7 +37,7 @@ fs::path checked_place(const fs::path& path) {
 }
 
 [[noreturn]] void fail(const fs::path& path, const char* doing, int code) {
-  throw Error(path.string(), doing + std::generic_category().message(code));
+  throw WriteError(path.string(), doing + std::generic_category().message(code));
 }
 
 constexpr char kBegin[] = ".ps-";

@@ -7,7 +7,25 @@
 #include <string>
 #include <vector>
 
+#include "libps/core/error.h"
+
 namespace ps {
+
+/// @brief A file could not be written: no fault of the input, and the same may succeed once there
+/// is room.
+class WriteError : public Error {
+ public:
+  /// @param file  that was to be written
+  /// @param why   what came of it
+  WriteError(const std::string& file, const std::string& why, const std::string& expected = "")
+      : Error(file, why, expected), file_(file), why_(why) {}
+
+  const std::string& file() const { return file_; }
+  const std::string& why() const { return why_; }
+
+ private:
+  std::string file_, why_;
+};
 
 /// @brief A file that appears whole or not at all: written beside its place, then renamed.
 /// It replaces a file of that name; where the name is a symbolic link, the file that it leads to.
@@ -24,13 +42,13 @@ class AtomicFile {
 
   /// Where to write; same folder and extension as the place it will have.
   const std::filesystem::path& temporary() const { return temporary_; }
-  void write(const void* data, std::size_t bytes);
+  void write(const void* data, std::size_t bytes);  ///< Throws ps::WriteError.
   void write(const std::string& text) { write(text.data(), text.size()); }
-  /// Throws ps::Error, as write() does, when the disk or a limit has no room for so many bytes
+  /// Throws ps::WriteError, as write() does, when the disk or a limit has no room for so many bytes
   /// more: for writers of temporary() that fail and do not say why.
   void check_room(std::size_t bytes) const;
   /// Flushes, checks, and puts the file in its place, or hands it to the AtomicFiles that live on
-  /// this thread. Throws ps::Error when the disk is full. Once.
+  /// this thread. Throws ps::WriteError when the disk is full. Once.
   void commit();
 
  private:

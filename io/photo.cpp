@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "io/photo.h"
 
+#include <algorithm>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -35,6 +36,17 @@ cv::Mat upright(const cv::Mat& image, int orientation) {
   return out;
 }
 
+/// The mean of each square of pixels, as large as leaves what is wanted.
+cv::Mat averaged(const cv::Mat& image, WantedPixels wanted) {
+  if (wanted.long_side <= 0) return image;
+  const auto [shorter, longer] = std::minmax(image.cols, image.rows);
+  const int square = std::min(longer / wanted.long_side, shorter / std::max(1, wanted.short_side));
+  if (square < 2) return image;
+  cv::Mat small;
+  cv::resize(image, small, {image.cols / square, image.rows / square}, 0, 0, cv::INTER_AREA);
+  return small;
+}
+
 /// BGR integers to RGB shares of `white`.
 template <class T>
 Image to_image(const cv::Mat_<cv::Vec<T, 3>>& bgr, float white) {
@@ -51,14 +63,18 @@ Image to_image(const cv::Mat_<cv::Vec<T, 3>>& bgr, float white) {
 
 }  // namespace
 
-Photo parse_photo(std::string_view bytes, const std::string& name) {
+Photo parse_photo(std::string_view bytes, const std::string& name, WantedPixels wanted) {
   return guarded(name, [&] {
     if (bytes.substr(0, 4) == "\x76\x2f\x31\x01") throw Error(name, "is an EXR", "a photo");
     const Exif exif = parse_exif(check_image_bytes(bytes, name));
-    const cv::Mat stored = decode_image(
+    cv::Mat stored = decode_image(
         bytes, cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION, name);
+    const cv::Size size = stored.size();
+    stored = averaged(stored, wanted);
     const cv::Mat bgr = upright(stored, exif.orientation);
+    stored.release();
     Photo photo;
+    photo.size = exif.orientation >= 5 ? cv::Size(size.height, size.width) : size;
     if (bgr.type() == CV_8UC3) {
       photo.color = to_image<unsigned char>(bgr, 255);
     } else if (bgr.type() == CV_16UC3) {
@@ -66,14 +82,15 @@ Photo parse_photo(std::string_view bytes, const std::string& name) {
     } else {
       throw Error(name, "its pixels are not integers", "8 or 16 bits for each channel");
     }
-    photo.focal_px = exif.focal_px(stored.size());
-    photo.focal_doubt = exif.focal_doubt(stored.size());
+    photo.focal_px = exif.focal_px(size);
+    photo.focal_doubt = exif.focal_doubt(size);
     return photo;
   });
 }
 
-Photo read_photo(const std::filesystem::path& path) {
-  return guarded(path.string(), [&] { return parse_photo(FileBytes(path).view(), path.string()); });
+Photo read_photo(const std::filesystem::path& path, WantedPixels wanted) {
+  return guarded(path.string(),
+                 [&] { return parse_photo(FileBytes(path).view(), path.string(), wanted); });
 }
 
 void write_image(const std::filesystem::path& path, const Image& image) {

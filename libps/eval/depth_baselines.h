@@ -9,7 +9,8 @@
 namespace ps {
 
 /// @brief Depths that are guessed without a look at the photo, for estimates to be held against.
-/// They learn from the very depths that they are then scored on, which is in their favour.
+/// They learn from the very depths that they are then scored on, which is in their favour; mean()
+/// alone leaves out the one.
 class DepthBaselines {
  public:
   /// Unknown depths (0, negative, not finite) are left out; an image without any teaches nothing.
@@ -23,11 +24,24 @@ class DepthBaselines {
   /// the lower edge, far above it). Throws as constant() does.
   Depth ramp(cv::Size size) const;
 
+  /// @return the mean of the logarithm over the other images, at each place of a grid of 64x64.
+  /// Where they know nothing, constant(). Throws as that does.
+  /// @param truth  that is left out, one of those that were learnt; its size is the result's
+  Depth mean(const Depth& truth) const;
+
  private:
-  static constexpr int kBins = 64;  ///< of an image's height
+  static constexpr int kBins = 64;  ///< of an image's height, and for mean() its width
+
+  /// Of the images' mean logarithms at each place: their sum, and how many there are.
+  struct Logs {
+    cv::Mat1d sum = cv::Mat1d::zeros(kBins, kBins), count = cv::Mat1d::zeros(kBins, kBins);
+  };
+  static cv::Range part(int bin, int side);
+  static Logs logs_of(const Depth& truth);
 
   std::vector<double> medians_;
   std::array<double, kBins> log_sum_{}, count_{};
+  Logs logs_;
 };
 
 }  // namespace ps

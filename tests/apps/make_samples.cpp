@@ -10,6 +10,7 @@
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <sstream>
 #include <string>
 
 #include "io/cloud_file.h"
@@ -19,7 +20,9 @@
 #include "io/safetensors.h"
 #include "io/trajectory.h"
 #include "libps/geometry/lift.h"
+#include "libps/rooms/room.h"
 #include "tests/support/random_weights.h"
+#include "tests/support/room_view.h"
 
 namespace fs = std::filesystem;
 
@@ -220,6 +223,49 @@ void write_weights(const fs::path& dir) {
                  "\x80\2M\xe9\3.\x80\2}.\x80\2cos\nsystem\nU\x09touch ran\x85R.");
 }
 
+/// Two views of one room, and where the second is seen from the first's camera.
+void write_pair(const fs::path& dir) {
+  const rooms::Room room(3);
+  rooms::CameraOptions options;
+  options.width = 480;
+  options.height = 360;
+  options.min_fov = 60;
+  options.max_fov = 75;
+  rooms::Camera camera = rooms::random_camera(room, 3, options);
+  const View first = room_view(room, camera);
+  Pose first_from_second = Pose::Identity();
+  first_from_second.linear() = Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY()).matrix();
+  first_from_second.translation() = Eigen::Vector3d(0.2, -0.05, 0.1);
+  const Pose pose = first.world_from_cam * first_from_second;
+  for (int i = 0; i < 12; ++i) {
+    camera.world_from_cam[static_cast<std::size_t>(i)] = static_cast<float>(pose(i / 4, i % 4));
+  }
+  const View second = room_view(room, camera);
+  fs::create_directories(dir / "pair");
+  write_image(dir / "pair" / "first.png", first.color);
+  write_image(dir / "pair" / "second.png", second.color);
+  write_depth(dir / "pair" / "first_depth.png", first.depth);
+  write_depth(dir / "pair" / "second_depth.png", second.depth);
+  write_intrinsics(dir / "pair" / "lens.json", first.intrinsics);
+  write_trajectory(dir / "pair" / "pose.txt", {{0, first_from_second, "", {}}});
+}
+
+/// Two frames of the walk as 7-Scenes has them.
+void write_seven_scenes(const fs::path& dir) {
+  fs::create_directories(dir / "seven" / "seq-01");
+  for (const int i : {0, 1}) {
+    const View view = view_from(pose_of(6 * i));
+    const std::string frame = "frame-00000" + std::to_string(i);
+    const auto file = [&](const char* kind) { return dir / "seven" / "seq-01" / (frame + kind); };
+    const cv::Rect part(8, 2, 80, 60);  // 4:3, as the sensor's
+    write_image(file(".color.png"), view.color(part).clone());
+    write_depth(file(".depth.png"), view.depth(part).clone());
+    std::ostringstream pose;
+    pose << view.world_from_cam.matrix() << "\n";
+    write_text(file(".pose.txt"), pose.str());
+  }
+}
+
 /// Two frames of the walk as TUM RGB-D has them, and as RealEstate10K.
 void write_data_sets(const fs::path& dir) {
   fs::create_directories(dir / "tum");
@@ -297,7 +343,8 @@ void write_published(const fs::path& dir) {
   write_safetensors(dir / "published.safetensors", tensors);
 }
 
-/// A PixelCNN that continues one autoencoder's codes, and another autoencoder of as many.
+/// A PixelCNN that continues one autoencoder's codes, another autoencoder of as many, and a
+/// PixelCNN of more.
 void write_mixed_codes(const fs::path& dir) {
   fs::create_directories(dir / "mixed");
   const auto write = [&](const char* name, const nn::Weights& weights, const Metadata& words) {
@@ -313,6 +360,7 @@ void write_mixed_codes(const fs::path& dir) {
   std::rotate(embed.begin(), embed.begin() + 1, embed.end());
   write("other.safetensors", {"other", others}, {});
   write("pixelcnn.safetensors", models::random_pixel_cnn(11, 24), {});
+  write("more_codes.safetensors", models::random_pixel_cnn(11, 30), {});
   write("refine.safetensors", models::random_refiner(8), {});
 }
 
@@ -323,8 +371,28 @@ void write_lpips(const fs::path& dir) {
   write_safetensors(dir / "lpips.safetensors", tensors);
 }
 
-/// The photo in other sizes, and one that says its focal length: in its EXIF block, IFD0 points to
-/// an EXIF directory with FocalLengthIn35mmFilm = 28; another says 1.
+/// An EXIF block: IFD0 has the orientation and points to a directory with FocalLengthIn35mmFilm.
+std::string exif_of(char orientation, char focal_length) {
+  using namespace std::string_literals;
+  return "Exif\0\0MM\0*\0\0\0\x08\0\x02\x01\x12\0\x03\0\0\0\x01\0"s + orientation +
+         "\0\0\x87\x69\0\x04\0\0\0\x01\0\0\0\x26\0\0\0\0\0\x01\xa4\x05\0\x03\0\0\0\x01\0"s +
+         focal_length + "\0\0\0\0\0\0"s;
+}
+
+/// Photos that say their focal length: one, one that cannot be, and one of a camera on its side.
+void write_photos_with_exif(const fs::path& dir) {
+  const std::string jpeg = bytes_of(dir / "photo.jpg");
+  const auto write = [&](const char* name, const std::string& block) {
+    const char length[] = {0, static_cast<char>(block.size() + 2)};
+    write_text(dir / name,
+               jpeg.substr(0, 2) + "\xff\xe1" + std::string(length, 2) + block + jpeg.substr(2));
+  };
+  write("exif.jpg", exif_of(1, 28));
+  write("exif_odd.jpg", exif_of(1, 1));
+  write("exif_turned.jpg", exif_of(6, 28));
+}
+
+/// The photo in other sizes.
 void write_sized_photos(const fs::path& dir) {
   for (const cv::Size size : {cv::Size(16, 16), {3000, 500}, {20, 600}, {500, 2}}) {
     Image photo(size);
@@ -338,20 +406,6 @@ void write_sized_photos(const fs::path& dir) {
         "p" + std::to_string(size.width) + "x" + std::to_string(size.height) + ".png";
     write_image(dir / name, photo);
   }
-  using namespace std::string_literals;
-  const std::string exif =
-      "Exif\0\0MM\0*\0\0\0\x08\0\x01\x87\x69\0\x04\0\0\0\x01\0\0\0\x1a\0\0\0\0"
-      "\0\x01\xa4\x05\0\x03\0\0\0\x01\0\x1c\0\0\0\0\0\0"s;
-  const std::string jpeg = bytes_of(dir / "photo.jpg");
-  const char length[] = {0, static_cast<char>(exif.size() + 2)};
-  const auto write = [&](const std::string& name, const std::string& block) {
-    write_text(dir / name,
-               jpeg.substr(0, 2) + "\xff\xe1" + std::string(length, 2) + block + jpeg.substr(2));
-  };
-  write("exif.jpg", exif);
-  std::string odd = exif;
-  odd[odd.find('\x1c')] = 1;
-  write("exif_odd.jpg", odd);
 }
 
 }  // namespace
@@ -366,6 +420,8 @@ int main(int argc, char** argv) try {
   ps::write_walk(dir / "part_a", 0, 4);
   ps::write_walk(dir / "part_b", 4, 7);
   ps::write_data_sets(dir);
+  ps::write_seven_scenes(dir);
+  ps::write_pair(dir);
   ps::write_methods(dir);
   ps::write_photos(dir);
   ps::write_odd_photos(dir);
@@ -378,6 +434,7 @@ int main(int argc, char** argv) try {
   ps::write_mixed_codes(dir);
   ps::write_lpips(dir);
   ps::write_sized_photos(dir);
+  ps::write_photos_with_exif(dir);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "make_samples: %s\n", error.what());

@@ -7,7 +7,7 @@ app_test(eval_depth_scores_a_folder_and_writes_table_report_and_samples [=[
   says '^e.json: depth of 7 frames scored in [0-9.]+ s$'
   prints '^method +AbsRel +RMSE, m +delta_1 +delta_2 +delta_3$'
   prints '^method +AbsRel raw +RMSE raw, m'
-  for m in ours constant 'row ramp'; do
+  for m in ours constant 'row ramp' mean; do
     is "$(grep -c "^$m  " "$work/out")" -eq 2
     is "$(grep -c "^$m," e.csv)" -eq 10
     is "$(grep -c "^$m," e.samples.csv)" -eq 7
@@ -28,8 +28,8 @@ app_test(eval_depth_of_one_frame_has_no_intervals [=[
   says '^e.json: depth of 1 frame scored in '
   grep -Eq '^ours,AbsRel,[0-9.e+-]+,,,1$' e.csv
   ! grep -q '[.][.]' "$work/out" || complain "an interval is printed: $(cat $work/out)"
-  is "$(grep -Ec '"(low|high)": null' e.json)" -eq 60
-  is "$(grep -Ec '"value": [0-9]' e.json)" -eq 30]=])
+  is "$(grep -Ec '"(low|high)": null' e.json)" -eq 80
+  is "$(grep -Ec '"value": [0-9]' e.json)" -eq 40]=])
 app_test(eval_depth_json_is_the_report_and_no_table [=[
   works --json eval depth $S/walk --weights $S/depth.safetensors
   prints '^  "methods": '
@@ -58,6 +58,16 @@ app_test(eval_depth_takes_tum_and_says_what_it_assumes [=[
   works eval depth $S/tum --weights $S/depth.safetensors
   says 'warning: .*tum: there is no intrinsics.json: a focal length of 525 pixels'
   says 'depth of 2 frames']=])
+app_test(eval_depth_takes_seven_scenes_and_says_what_it_assumes [=[
+  works eval depth $S/seven --weights $S/depth.safetensors -o e.json
+  says 'warning: .*seven: there is no intrinsics.json: '
+  says 'depth of 2 frames'
+  grep -q '"layout": "7-Scenes"' e.json
+  is "$(grep '^ours,' e.samples.csv | cut -d, -f2 | xargs)" = "seq-01/frame-000000 seq-01/frame-000001"
+  rm -f e.*
+  cp -r $S/seven w
+  echo 1 2 3 > w/seq-01/frame-000001.pose.txt
+  fails 1 'frame-000001.pose.txt' eval depth w --weights $S/depth.safetensors]=])
 app_test(eval_depth_leaves_frames_without_depth_out_and_refuses_data_without_any [=[
   cp -r $S/walk w
   for i in 1 2 4; do cp $S/zero.png w/depth/0000$i.png; done

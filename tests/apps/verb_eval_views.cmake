@@ -107,3 +107,8 @@ app_test(eval_views_refuses_other_methods_and_ranges_without_pairs [=[
   fails 1 'walk: no two of its frames are 170 to 180 degrees and at most 1 m apart' eval views $S/walk --min-rotation 170 --max-rotation 180 --methods copy
   fails 2 'min-rotation: 50 is more than --max-rotation 40' eval views $S/walk --min-rotation 50 --max-rotation 40 --methods copy
   fails 2 'min-rotation: 90 is more than --max-rotation 60' eval views $S/walk --min-rotation 90 --methods copy]=])
+app_test(eval_views_takes_seven_scenes [=[
+  works eval views $S/seven --min-rotation 5 --max-rotation 20 --methods copy,nearest --pairs 2 -o v.json
+  says 'views of 2 pairs scored'
+  grep -q '"layout": "7-Scenes"' v.json
+  grep -Eq '^nearest,"PSNR visible, dB",[0-9.]+,' v.csv]=])

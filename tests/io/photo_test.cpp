@@ -125,6 +125,30 @@ TEST(Photo, exif_orientation_is_applied_once) {
   }
 }
 
+TEST(Photo, of_more_pixels_than_wanted_is_averaged_and_keeps_its_lens) {
+  const cv::Mat3b stripes = [] {
+    cv::Mat3b image(64, 98, cv::Vec3b(0, 0, 0));
+    for (int x = 0; x < image.cols; x += 2) image.col(x) = cv::Vec3b(200, 100, 50);
+    return image;
+  }();
+  const std::string png = encoded(".png", stripes);
+  const Photo whole = parse_photo(png, "a");
+  EXPECT_EQ(whole.size, stripes.size());
+  const Photo half = parse_photo(png, "a", {49, 1});
+  EXPECT_EQ(half.size, stripes.size());
+  ASSERT_EQ(half.color.size(), cv::Size(49, 32));
+  EXPECT_NEAR(half.color(10, 10)[0], 25 / 255.f, 1e-6);
+  EXPECT_NEAR(half.color(10, 10)[2], 100 / 255.f, 1e-6);
+  for (const WantedPixels wanted : {WantedPixels{50, 1}, {49, 33}, {0, 1}, {200, 100}}) {
+    EXPECT_EQ(cv::norm(parse_photo(png, "a", wanted).color, whole.color, cv::NORM_INF), 0);
+  }
+  const std::string block = exif_block(6, {tag(0xA405, 3, 28)}, {});
+  const Photo turned = parse_photo(with_exif(encoded(".jpg", stripes), block), "a.jpg", {30, 1});
+  EXPECT_EQ(turned.size, cv::Size(64, 98));
+  EXPECT_EQ(turned.color.size(), cv::Size(21, 32));
+  EXPECT_NEAR(*turned.focal_px, intrinsics_from_focal_35mm(98, 64, 28).fx, 1e-9);
+}
+
 TEST(Photo, tiff_orientation_is_applied_once) {  // by OpenCV itself
   for (const int orientation : {1, 3, 6, 8}) {
     const std::string pixels =
