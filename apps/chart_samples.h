@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 
 #include "apps/frames_arguments.h"
 #include "libps/eval/knob.h"
@@ -19,6 +20,13 @@ struct ChartSamples {
 /// @brief Procedural rooms that nothing was trained on: those of rooms:9001 with seed 0, and so on.
 /// @param side  of views, pixels
 ChartSamples room_samples(std::size_t count, int side, const Context& context);
+
+/// @brief Pairs of these frames, which must have depth; `count` at most, and there may be none.
+ChartSamples frame_samples(std::shared_ptr<const ChosenFrames> frames, std::size_t count,
+                           const Context& context);
+
+/// @brief Loads a frame. Throws ps::Error when it is unsound or has no depth.
+View load_with_depth(const ChosenFrames& frames, std::size_t chosen_frame);
 
 /// @brief Pairs of frames of DATA, which must have depth; `count` at most. Throws ps::Error when
 /// there is no pair, CLI::ValidationError as choose_posed_frames() does.

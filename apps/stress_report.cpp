@@ -39,6 +39,28 @@ Image sheet_at(const stress::Axis& axis, const stress::AxisResult& result, std::
   return contact_sheet(tiles, 240);
 }
 
+/// Methods but ours, a row for each: the truth, just before the method breaks and just after.
+Image sheet_of_others(const stress::Axis& axis, const stress::AxisResult& result) {
+  std::vector<SheetTile> tiles;
+  for (std::size_t m = 1; m < result.curves.size(); ++m) {
+    const stress::Curve& curve = result.curves[m];
+    const std::size_t after = curve.first_broken(axis), steps = curve.steps.size();
+    const int row = static_cast<int>(m) - 1;
+    const auto add = [&](std::size_t step, int column) {
+      const stress::Step& at = curve.steps[step];
+      const std::string name = curve.method + " " + number(at.value) + ": " + number(at.score);
+      if (!at.picture.empty()) tiles.push_back({name, at.picture, row, column});
+    };
+    if (axis.truth) {
+      const double value = axis.values[std::min(after, steps - 1)];
+      tiles.push_back({"truth " + number(value), axis.truth(value), row, 0});
+    }
+    if (after > 0) add(after - 1, 1);
+    if (after < steps) add(after, 2);
+  }
+  return contact_sheet(tiles, 240);
+}
+
 void write_picture(OutputFolder& out, const std::string& name, const Image& image) {
   if (image.empty()) return;
   out.write(name, [&](const std::filesystem::path& path) { write_image(path, image); });
@@ -84,7 +106,8 @@ bool beaten(const StressRow& row, std::string* by) {
 }  // namespace
 
 std::vector<std::string> axis_files(const std::string& axis) {
-  return {axis + ".png", axis + ".svg", axis + "-before.png", axis + "-after.png"};
+  return {axis + ".png", axis + ".svg", axis + "-before.png", axis + "-after.png",
+          axis + "-others.png"};
 }
 
 void write_axis_pictures(OutputFolder& out, StressRow& row) {
@@ -100,6 +123,7 @@ void write_axis_pictures(OutputFolder& out, StressRow& row) {
   if (first < axis.values.size()) {
     write_picture(out, files[3], sheet_at(axis, row.result, first));
   }
+  write_picture(out, files[4], sheet_of_others(axis, row.result));
   for (stress::Curve& curve : row.result.curves) {
     for (stress::Step& step : curve.steps) step.picture.release();
   }
@@ -118,11 +142,29 @@ std::string breaking_table(const std::vector<StressRow>& rows) {
   return text;
 }
 
-std::string stress_markdown(const std::vector<StressRow>& rows) {
-  std::string text =
-      "# Stress\n\nWhere each method breaks, one thing going wrong at a time; none = not within "
-      "the values tried.\n\n| axis | unit | broken where | ours | others "
-      "|\n|---|---|---|---|---|\n";
+std::vector<std::string> stress_notes(const std::vector<StressRow>& rows) {
+  std::vector<std::string> notes;
+  for (const StressRow& row : rows) {
+    const stress::Curve& ours = row.result.curves[0];
+    const std::string& name = row.axis.name;
+    for (const std::size_t i : ours.jumps) {
+      notes.push_back("note: " + name + ": ours gets worse at once from " +
+                      number(ours.steps[i - 1].value) + " (" + number(ours.steps[i - 1].score) +
+                      ") to " + number(ours.steps[i].value) + " (" + number(ours.steps[i].score) +
+                      ")");
+    }
+    if (ours.first_broken(row.axis) > 0) continue;
+    notes.push_back("note: " + name + ": ours is broken before anything goes wrong, its score is " +
+                    number(ours.steps[0].score));
+  }
+  return notes;
+}
+
+std::string stress_markdown(const std::vector<StressRow>& rows, const std::string& data) {
+  std::string text = "# Stress\n\nWhere each method breaks on " + data +
+                     ", one thing going wrong at a time; none = not within the values tried.\n\n| "
+                     "axis | unit | broken where | ours | others "
+                     "|\n|---|---|---|---|---|\n";
   for (const StressRow& row : rows) {
     const auto& curves = row.result.curves;
     text += "| " + row.axis.name + " | " + row.axis.unit + " | " + stress::criterion_of(row.axis) +
@@ -155,6 +197,7 @@ std::string stress_markdown(const std::vector<StressRow>& rows) {
     const std::size_t first = row.result.curves[0].first_broken(row.axis);
     if (first > 0) text += "![just before](" + name + "-before.png)\n";
     if (first < row.axis.values.size()) text += "![just after](" + name + "-after.png)\n";
+    text += "![each other just before and just after it breaks](" + name + "-others.png)\n";
   }
   return text;
 }

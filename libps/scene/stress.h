@@ -41,6 +41,7 @@ struct Axis {
   bool higher_is_better = true;
   double limit = 0;                  ///< broken is what scores worse than this, or is no number
   bool geometry = true;              ///< concerns geometry: the README's claim is about these
+  std::string rooms_alone;           ///< why given frames cannot have it; empty = they can
   std::vector<std::string> methods;  ///< the first is ours
   /// A function of its arguments alone, whatever the number of threads. A ps::Error is a refusal,
   /// which scores nothing; any other exception is a violation.

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "libps/scene/stress.h"
+#include "libps/scene/stress_given.h"
 #include "libps/scene/view_methods.h"
 
 namespace ps::stress {
@@ -20,6 +23,8 @@ struct SuiteOptions {
   int photos = 2;             ///< of as many rooms, to be looked around in
   int samples = 1;            ///< completions of each view
   bool dense = false;         ///< values between the others as well
+  /// Put under stress in place of rooms: all axes then but those of rooms alone. Null = rooms.
+  std::shared_ptr<const GivenFrames> given;
 };
 
 SuiteOptions small_suite(std::uint64_t seed);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <utility>
 
 #include "libps/core/error.h"
@@ -18,10 +19,10 @@ namespace {
 const std::string kClosed = "ours", kPlainSplat = "ours, no guard", kPublished = "radius 4",
                   kNearestPoint = "nearest point";
 
-/// A fused room, and a view of it at any size.
+/// A fused room, and a view of it.
 struct Model {
   Cloud cloud;
-  rooms::Room room;
+  std::optional<rooms::Room> room;  ///< none where frames are given
   View view;
   Mask covered;  ///< of the view
 };
@@ -71,17 +72,18 @@ Cloud repeated(const Cloud& cloud, double times) {
   return result;
 }
 
-/// The view at another size, shot anew; kept, as that takes a while.
+/// The view at another size, shot anew and kept, as that takes a while; given frames only shrink.
 class Zoom {
  public:
   View at(const Model& model, double factor) {
+    if (!model.room) return shrunk(model.view, 1 / factor);
     const auto key = std::pair(&model, factor);
     const auto known = views_.find(key);
     if (known != views_.end()) return known->second;
     const auto side = [&](int pixels) { return std::max(1, static_cast<int>(pixels * factor)); };
     const Intrinsics lens = resized(model.view.intrinsics, side(model.view.intrinsics.width),
                                     side(model.view.intrinsics.height));
-    const View view = shoot_view(model.room, room_camera(lens, model.view.world_from_cam));
+    const View view = shoot_view(*model.room, room_camera(lens, model.view.world_from_cam));
     return views_[key] = view;
   }
 
@@ -94,11 +96,19 @@ class CloudAxes {
   explicit CloudAxes(const SuiteOptions& options) : options_(options) {
     models_ = std::make_shared<Lazy<std::vector<Model>>>([options] {
       std::vector<Model> models;
+      const auto add = [&](const World& world, std::optional<rooms::Room> room) {
+        models.push_back({fuse_by(kOursUnguarded, world.frames), std::move(room), world.held_out[0],
+                          world.covered[0]});
+      };
+      if (options.given) {
+        for (const auto& walk : options.given->walks) {
+          add(given_world({walk.frames, {walk.held_out[0]}}, options.size), std::nullopt);
+        }
+        return models;
+      }
       for (int i = 0; i < options.rooms; ++i) {
         const std::uint64_t seed = room_seed(options, i);
-        const World world = make_world(seed, options.frames, 1, options.size);
-        models.push_back({fuse_by(kOursUnguarded, world.frames), rooms::Room(seed),
-                          world.held_out[0], world.covered[0]});
+        add(make_world(seed, options.frames, 1, options.size), rooms::Room(seed));
       }
       return models;
     });
@@ -133,6 +143,9 @@ class CloudAxes {
     axis.truth = [=](double value) { return disturb(models->get()[0], value).view.color; };
     axes_.push_back(std::move(axis));
   }
+
+  /// Of the last axis.
+  void rooms_alone(const std::string& why) { axes_.back().rooms_alone = why; }
 
   std::vector<Axis> take() { return std::move(axes_); }
 
@@ -169,6 +182,7 @@ std::vector<Axis> cloud_axes(const SuiteOptions& options) {
            [zoom](const Model& m, double value) {
              return Case{m.cloud, zoom->at(m, value)};
            });
+  axes.rooms_alone("frames are no sharper than they are");
   axes.add("image-tiny", "Pictures are so many times narrower than the frames", "times",
            {1, 2, 4, 8, 16, 32}, [zoom](const Model& m, double value) {
              return Case{m.cloud, zoom->at(m, 1 / value)};

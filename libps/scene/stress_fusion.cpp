@@ -73,6 +73,9 @@ class FusionAxes {
     axes_.push_back(std::move(axis));
   }
 
+  /// Of the last axis.
+  void rooms_alone(const std::string& why) { axes_.back().rooms_alone = why; }
+
   void add_depths();
   void add_cameras();
   std::vector<Axis> take() { return std::move(axes_); }
@@ -107,6 +110,7 @@ void FusionAxes::add_depths() {
       [](const std::vector<View>& frames, double value, std::uint64_t) {
         return with_mirror(frames, value);
       });
+  rooms_alone("it reflects the walls of a box");
 }
 
 void FusionAxes::add_cameras() {
@@ -128,6 +132,10 @@ void FusionAxes::add_cameras() {
   add("focal-error", "The focal length of all frames is taken to be larger than it is", "%",
       {0, 1, 2, 4, 8, 16, 32}, Score::psnr, 17,
       each([](const View& v, double x, const Draw&) { return with_focal(v, x / 100); }));
+  add("principal-point",
+      "The principal point of all frames is taken to be further right than it is", "% of the width",
+      {0, 1, 2, 4, 8, 16, 32}, Score::psnr, 17,
+      each([](const View& v, double x, const Draw&) { return with_principal_point(v, x / 100); }));
   add("exposure", "Each frame is exposed more or less, and clips", "stops, spread",
       {0, 0.25, 0.5, 1, 1.5, 2, 3}, Score::psnr, 19,
       [](const std::vector<View>& frames, double value, std::uint64_t seed) {

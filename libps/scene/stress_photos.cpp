@@ -8,17 +8,16 @@
 #include "libps/eval/pairs.h"
 #include "libps/eval/statistics.h"
 #include "libps/scene/photo_depth.h"
-#include "libps/scene/room_view.h"
 #include "libps/scene/stress_suite.h"
 
 namespace ps::stress {
 namespace {
 
-constexpr double kTurned = 20;                      ///< degrees to the right, unless an axis turns
-const Eigen::Vector3d kMoved(.2, 0, 0);             ///< metres, unless an axis moves
 constexpr double kChange = .1, kMostChanged = .01;  ///< of colours; share of what was seen
 
-constexpr int kSeam = 2;  ///< pixels
+constexpr int kSeam = 2;          ///< pixels
+const cv::Size kPhoto(256, 256);  ///< pixels; given photos fit into that
+const std::string kMovesCamera = "it moves the camera at will";
 const std::string kOurs = "ours", kUnguarded = "ours, no guard";
 
 /// What a method is asked: the input as it knows it, and where to look from.
@@ -37,17 +36,23 @@ struct Truth {
   Image color;
   Mask visible;  ///< what the undisturbed photo sees of it
 };
-using Ask = std::function<Question(const View& photo, double value, const Draw&)>;
+using Ask = std::function<Question(const Photo& photo, double value, const Draw&)>;
 
-Question ask(const View& input, const View& photo, double degrees = kTurned,
-             const Eigen::Vector3d& metres = kMoved) {
-  return {input, photo.intrinsics, moved_pose(photo.world_from_cam, degrees, metres)};
+/// Looks from elsewhere.
+Question ask(const View& input, const Photo& photo) {
+  return {input, photo.lens, photo.world_from_cam};
+}
+
+/// Looks from the photo's own camera, turned and moved.
+Question ask_from(const View& input, const Photo& photo, double degrees,
+                  const Eigen::Vector3d& metres) {
+  return {input, photo.view.intrinsics, moved_pose(photo.view.world_from_cam, degrees, metres)};
 }
 
 /// Asks about the usual view of a photo that something went wrong with.
 Ask about(const std::function<View(const View&, double, const Draw&)>& disturb) {
-  return [disturb](const View& photo, double value, const Draw& draw) {
-    return ask(disturb(photo, value, draw), photo);
+  return [disturb](const Photo& photo, double value, const Draw& draw) {
+    return ask(disturb(photo.view, value, draw), photo);
   };
 }
 
@@ -92,10 +97,13 @@ class PhotoAxes {
     };
     axis.truth = [=](double value) {
       const Photo& photo = shared->photos.get()[0];
-      return shared->truth(photo, ask(photo.view, value, {})).color;
+      return shared->truth(photo, ask(photo, value, {})).color;
     };
     axes_.push_back(std::move(axis));
   }
+
+  /// Of the last axis.
+  void rooms_alone(const std::string& why) { axes_.back().rooms_alone = why; }
 
   /// Shows the last axis without its guard too.
   void with_unguarded() {
@@ -109,34 +117,44 @@ class PhotoAxes {
     SuiteOptions options;
     Lazy<MethodNetworks> networks;
     Lazy<std::vector<Photo>> photos;
-    std::map<std::vector<double>, Truth> truths;
+    std::map<std::pair<const Photo*, std::vector<double>>, Truth> truths;
 
     Shared(const SuiteOptions& o, const NetworksSource& source)
-        : options(o), networks(source), photos([o] {
-            std::vector<Photo> all;
-            for (int i = 0; i < o.photos; ++i)
-              all.push_back(make_photo(room_seed(o, i), {256, 256}));
-            return all;
-          }) {}
+        : options(o), networks(source), photos([this] { return make_photos(); }) {}
+
+    std::vector<Photo> make_photos() {
+      std::vector<Photo> all;
+      if (!options.given) {
+        for (int i = 0; i < options.photos; ++i) {
+          all.push_back(make_photo(room_seed(options, i), kPhoto));
+        }
+        return all;
+      }
+      for (const auto& pair : options.given->pairs) {
+        all.push_back(given_photo(pair, kPhoto));
+        // For all methods alike: what they do with holes is an axis of its own.
+        if (cv::countNonZero(all.back().view.depth == 0) > 0) complete(&all.back().view);
+      }
+      return all;
+    }
 
     /// Shot once for each lens and pose.
     const Truth& truth(const Photo& photo, const Question& question) {
       const Eigen::Matrix4d m = question.world_from_cam.matrix();
       std::vector<double> key(m.data(), m.data() + m.size());
       key.push_back(question.lens.width);
-      Truth& known = truths[key];
+      Truth& known = truths[{&photo, key}];
       if (known.color.empty()) {
-        const View view =
-            shoot_view(photo.room, room_camera(question.lens, question.world_from_cam));
-        known = {view.color, true_visibility(photo.view, view).visible};
+        const View view = photo.shoot(question.lens, question.world_from_cam);
+        known = {view.color, true_visibility(photo.known, view).visible};
       }
       return known;
     }
 
-    /// Ours fills holes of depth first, as `scene` does.
-    void complete(Question* question) {
+    /// Fills holes of depth, as `scene` does.
+    void complete(View* view) {
       const SceneNetworks& scene = networks.get().scene;
-      fill_holes(question->input, *scene.depth, scene.depth_scale);
+      fill_holes(*view, *scene.depth, scene.depth_scale);
     }
 
     MethodView shown_by(const std::string& name, const Question& question) {
@@ -157,8 +175,8 @@ class PhotoAxes {
       std::vector<double> scores;
       for (std::size_t i = 0; i < photos.get().size(); ++i) {
         const Photo& photo = photos.get()[i];
-        Question question = ask(photo.view, value, {options.seed, static_cast<std::uint32_t>(i)});
-        if (method == kOurs && question.holes) complete(&question);
+        Question question = ask(photo, value, {options.seed, static_cast<std::uint32_t>(i)});
+        if (method == kOurs && question.holes) complete(&question.input);
         const MethodView shown = shown_by(method, question);
         // Not of ours without its guard: where depth is missing nobody knows what would stand
         // before what was seen, which is what the guard is for.
@@ -168,9 +186,10 @@ class PhotoAxes {
         outcome.finite = outcome.finite && cv::checkRange(shown.color);
         outcome.digest = outcome.digest * 31 + digest_of(shown.color);
         const Truth& true_view = truth(photo, question);
-        scores.push_back(psnr(shown.color, true_view.color,
-                              where == Where::visible ? true_view.visible : Mask()));
         if (i == 0) outcome.picture = shown.color;
+        const bool whole = where == Where::all;
+        if (!whole && cv::countNonZero(true_view.visible) == 0) continue;
+        scores.push_back(psnr(shown.color, true_view.color, whole ? Mask() : true_view.visible));
       }
       outcome.score = [scores] { return mean(scores); };
       return outcome;
@@ -185,27 +204,29 @@ class PhotoAxes {
 void add_looks(PhotoAxes* axes) {
   axes->add("rotation", "The camera turns to the right", "degrees",
             {0, 10, 20, 40, 60, 90, 135, 180}, Where::all, 12,
-            [](const View& photo, double x, const Draw&) {
-              return ask(photo, photo, x, Eigen::Vector3d::Zero());
+            [](const Photo& photo, double x, const Draw&) {
+              return ask_from(photo.view, photo, x, Eigen::Vector3d::Zero());
             });
+  axes->rooms_alone(kMovesCamera);
   axes->add("translation", "The camera moves to the right", "metres", {0, .1, .2, .4, .6, .8},
-            Where::visible, 17, [](const View& photo, double x, const Draw&) {
-              return ask(photo, photo, 0, {x, 0, 0});
+            Where::visible, 17, [](const Photo& photo, double x, const Draw&) {
+              return ask_from(photo.view, photo, 0, {x, 0, 0});
             });
+  axes->rooms_alone(kMovesCamera);
   axes->add("missing-share", "The photo is missing from its right side on", "% of the pixels",
             {0, 10, 25, 50, 75, 90, 100}, Where::all, 12,
-            [](const View& photo, double x, const Draw&) {
-              View input = photo;
-              input.depth = photo.depth.clone();
+            [](const Photo& photo, double x, const Draw&) {
+              View input = photo.view;
+              input.depth = photo.view.depth.clone();
               const int from = static_cast<int>((1 - x / 100) * input.depth.cols);
-              input.color = photo.color.clone();
+              input.color = photo.view.color.clone();
               input.depth.colRange(from, input.depth.cols).setTo(0);
               input.color.colRange(from, input.color.cols).setTo(cv::Scalar::all(.5));
-              return ask(input, photo, 0, Eigen::Vector3d::Zero());
+              return ask_from(input, photo, 0, Eigen::Vector3d::Zero());
             });
   axes->add("temperature", "The temperature of sampling", "", {0, .35, .7, 1, 1.5, 2}, Where::all,
-            12, [](const View& photo, double x, const Draw&) {
-              Question question = ask(photo, photo);
+            12, [](const Photo& photo, double x, const Draw&) {
+              Question question = ask(photo.view, photo);
               question.temperature = x;
               return question;
             });
@@ -224,8 +245,8 @@ void add_inputs(PhotoAxes* axes) {
             about([](const View& v, double x, const Draw&) { return with_bias(v, x / 100); }));
   axes->add("photo-holes", "The photo's depth is missing in blots", "% of the pixels",
             {0, 10, 25, 50, 75, 90, 100}, Where::visible, 17,
-            [](const View& photo, double x, const Draw& draw) {
-              Question question = ask(with_holes(photo, x / 100, draw), photo);
+            [](const Photo& photo, double x, const Draw& draw) {
+              Question question = ask(with_holes(photo.view, x / 100, draw), photo);
               question.holes = true;
               return question;
             });

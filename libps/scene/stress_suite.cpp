@@ -59,6 +59,12 @@ std::uint64_t draw_seed(const SuiteOptions& options, std::size_t i) {
 Worlds make_worlds(const SuiteOptions& options) {
   return std::make_shared<Lazy<std::vector<World>>>([options] {
     std::vector<World> worlds;
+    if (options.given) {
+      for (const auto& walk : options.given->walks) {
+        worlds.push_back(given_world(walk, options.size));
+      }
+      return worlds;
+    }
     for (int i = 0; i < options.rooms; ++i) {
       worlds.push_back(
           make_world(room_seed(options, i), options.frames, options.held_out, options.size));

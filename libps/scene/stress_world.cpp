@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "libps/core/random.h"
 #include "libps/eval/pairs.h"
@@ -17,6 +18,7 @@ namespace {
 
 constexpr float kTurned = .8f, kMoved = .7f;  ///< radians and metres, of a walk
 constexpr double kMetresPerDegree = .02;
+constexpr double kElsewhereTurned = 20, kElsewhereMoved = .2;  ///< degrees and metres, of a photo
 constexpr double kGamma = 2.2;
 enum Purpose : std::uint32_t { kPixel, kFrame, kBlots, kCamera };
 
@@ -59,6 +61,10 @@ World make_world(std::uint64_t seed, int frames, int held_out, cv::Size size) {
         i == 0 ? first : rooms::moved(room, first, key(seed, i), kTurned, kMoved);
     (i < frames ? world.frames : world.held_out).push_back(shoot_view(room, camera));
   }
+  return completed(std::move(world));
+}
+
+World completed(World world) {
   LiftOptions all;
   all.edge_footprints = 0;
   for (const View& view : world.frames) world.truth += lift(view, 0, Origin::observed, all);
@@ -71,11 +77,18 @@ World make_world(std::uint64_t seed, int frames, int held_out, cv::Size size) {
 }
 
 Photo make_photo(std::uint64_t seed, cv::Size size, const rooms::RoomOptions& options) {
-  rooms::Room room(seed, options);
+  const rooms::Room room(seed, options);
   View view = shoot_view(room, first_camera(room, key(seed, 0), size));
   // Outside of windows is far away.
   view.depth.setTo(20, view.depth == 0);
-  return {std::move(room), std::move(view)};
+  Photo photo;
+  photo.view = photo.known = view;
+  photo.lens = view.intrinsics;
+  photo.world_from_cam = moved_pose(view.world_from_cam, kElsewhereTurned, {kElsewhereMoved, 0, 0});
+  photo.shoot = [room](const Intrinsics& lens, const Pose& pose) {
+    return shoot_view(room, room_camera(lens, pose));
+  };
+  return photo;
 }
 
 Pose moved_pose(const Pose& pose, double degrees, const Eigen::Vector3d& metres) {
@@ -166,6 +179,12 @@ View with_focal(const View& view, double share) {
   View result = view;
   result.intrinsics.fx *= 1 + share;
   result.intrinsics.fy *= 1 + share;
+  return result;
+}
+
+View with_principal_point(const View& view, double share) {
+  View result = view;
+  result.intrinsics.cx += share * view.intrinsics.width;
   return result;
 }
 

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "libps/geometry/point.h"
 #include "libps/geometry/view.h"
 #include "libps/rooms/room.h"
+#include "libps/scene/stress_given.h"
 
 namespace ps::stress {
 
@@ -21,13 +23,27 @@ struct World {
 /// @brief A room that somebody walks about in, looking around.
 World make_world(std::uint64_t seed, int frames, int held_out, cv::Size size);
 
-/// @brief A photo of a room.
+/// @return the world of these frames and views left out, with its truth and what is covered
+World completed(World world);
+
+/// @brief A world of given frames, made smaller than `size`, whatever their aspect.
+World given_world(const GivenFrames::Walk& walk, cv::Size size);
+
+/// @brief A photo, and what other cameras see.
 struct Photo {
-  rooms::Room room;
-  View view;  ///< every pixel has a depth
+  View view;            ///< holes of its depth are yet to be filled
+  View known;           ///< the same, with depth where it is known to be true
+  Intrinsics lens;      ///< of the camera elsewhere, unless an axis moves it
+  Pose world_from_cam;  ///< of that camera
+  std::function<View(const Intrinsics&, const Pose&)> shoot;  ///< what a camera truly sees
 };
 
+/// @brief A photo of a room; every pixel has a depth. The camera elsewhere is turned to the right
+/// by 20 degrees and moved by 20 cm.
 Photo make_photo(std::uint64_t seed, cv::Size size, const rooms::RoomOptions& options = {});
+
+/// @brief A photo that is given, and the target; nothing is known of other cameras.
+Photo given_photo(const GivenFrames::Pair& pair, cv::Size size);
 
 /// @brief The photo's camera, elsewhere: turned to the right (degrees), then moved along its own
 /// axes (metres).
@@ -57,6 +73,8 @@ View with_pose_noise(const View& view, double degrees, const Draw& draw);
 View with_exposure(const View& view, double stops);
 /// Taken to be from a lens whose focal length is wrong by this share.
 View with_focal(const View& view, double share);
+/// Taken to be from a lens whose principal point is off to the right by this share of the width.
+View with_principal_point(const View& view, double share);
 /// Panes: within that share of the picture, at each pixel by chance nothing, what is right, or the
 /// depth of something else up to three times as far.
 View with_glass(const View& view, double share, const Draw& draw);
@@ -66,6 +84,8 @@ View with_glass(const View& view, double share, const Draw& draw);
 std::vector<View> with_mirror(const std::vector<View>& frames, double radius);
 /// So many times narrower, at least 2 pixels wide.
 View shrunk(const View& view, double times);
+/// Shrunk where it is larger than `most`, so that it is not.
+View reduced(const View& view, cv::Size most);
 
 /// @return a pixel's normal numbers: a function of (draw, x, y)
 double normal_at(const Draw& draw, int x, int y);
