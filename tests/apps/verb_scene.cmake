@@ -115,7 +115,7 @@ app_test(scene_keeps_to_a_budget [=[
   is $all -gt 100000
   is $some -le 21000
   is $some -gt 15000
-  is $auto -lt $((all * 3 / 4))
+  is $auto -lt $((all * 4 / 5))
   works scene $args -o near --budget psnr=35
   is "$(json points near/report.json)" -lt $all
   works scene $args -o one --budget points=1
