@@ -28,6 +28,12 @@ app_test(stress_takes_frames "
   is \"$(grep -c '^ *.000[01][0-9].,*$' s/stress.json)\" -eq 8
   grep -q '\"data\": \".*/data/room\"' s/stress.json
   grep -q '^Where each method breaks on .*/data/room, one thing' s/stress.md")
+app_test(stress_says_where_ours_jumps [=[
+  works --threads 1 stress rooms:5:4 -o s --axes depth-bias
+  says '^note: depth-bias: ours gets worse at once from 4 .[0-9.]*. to 8 .[0-9.]*.$'
+  grep -q '^- depth-bias: jump towards 8' s/stress.md
+  works --threads 1 -q stress rooms:5:4 -o s --axes depth-bias
+  is ! -s "$work/err"]=])
 app_test(stress_refuses_frames_that_are_too_few_or_have_no_depth [=[
   fails 1 'absent' stress absent -o s
   fails 1 'no world has three frames' stress rooms:5:2 -o s --axes exposure
