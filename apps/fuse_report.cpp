@@ -18,7 +18,8 @@ Json to_json(const FrameStudy& study, const FrameList& frames, double tolerance)
     all.push_back({{"frame", name},
                    {"gain", {word.gain[0], word.gain[1], word.gain[2]}},
                    {"scale", word.scale},
-                   {"contradicted", word.contradicted}});
+                   {"contradicted", word.contradicted},
+                   {"alone", word.alone}});
   }
   return {{"refused", refused},
           {"gave_up", study.gave_up},
@@ -60,6 +61,17 @@ void warn_of(const Fused& fused, const Context& context) {
   }
   warn(fused.refused(), "frame is left out, as the others contradict it: its pose must be wrong",
        "frames are left out, as the others contradict them: their poses must be wrong");
+  if (fused.study) {
+    const auto& words = fused.study->words;
+    const auto alone = static_cast<std::size_t>(
+        std::count_if(words.begin(), words.end(), [](const FrameWord& w) { return w.alone; }));
+    if (words.size() > 1) {
+      warn(
+          alone,
+          "frame shares no surface with the others: nobody can tell whether its pose is right",
+          "frames share no surface with the others: nobody can tell whether their poses are right");
+    }
+  }
   const std::string which = fused.study ? ", or none that its neighbours share," : " at all";
   warn(fused.report.empty - fused.refused(), "frame has no depth" + which + " and is left out",
        "frames have no depth" + which + " and are left out");

@@ -36,9 +36,9 @@ void SceneArguments::add_sampling_options(CLI::App& verb) {
   verb.add_option("--temperature", temperature, "Of the sampling; 0 = always the likeliest code")
       ->type_name("T")
       ->check(in_range(0, 2));
-  verb.add_option(
-          "--guidance", guidance,
-          "How much the sampling is held to the nearest seen colours; 0 = not, as published")
+  verb.add_option("--guidance", guidance,
+                  "How much the sampling is held to the nearest seen colours: 0 = not, as "
+                  "published; from about 10 on, only their stripes are left")
       ->type_name("W")
       ->check(in_range(0, 1000));
   verb.add_option(
@@ -183,7 +183,8 @@ SceneOptions SceneArguments::scene(const Context& context) const {
     o.samples = static_cast<int>(count);
   }
   if (o.until_settled && refine_best > 0) {
-    throw CLI::ValidationError("--refine-best", "does not go with --samples auto");
+    throw CLI::ValidationError("--refine-best",
+                               "does not go with --samples auto; expected a number of samples");
   }
   o.temperature = temperature;
   o.guidance = guidance;

@@ -100,6 +100,7 @@ void tell_contradictions(const std::vector<FramePair>& pairs, std::vector<FrameW
   const std::vector<double> shares = contradictions(pairs, *words, kJuries[1]);
   for (std::size_t i = 0; i < words->size(); ++i) {
     (*words)[i].contradicted = std::isnan(shares[i]) ? 0 : shares[i];
+    (*words)[i].alone = std::isnan(shares[i]);
   }
 }
 

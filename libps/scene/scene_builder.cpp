@@ -9,7 +9,7 @@
 #include "libps/core/clock.h"
 #include "libps/core/error.h"
 #include "libps/geometry/point.h"
-#include "libps/scene/greys.h"
+#include "libps/scene/muted_colors.h"
 #include "libps/scene/network_view.h"
 
 namespace ps {
@@ -124,8 +124,7 @@ bool SceneBuilder::Impl::fill(SupportView& support, const Splat& seen) {
   const outpaint::Outpainted filled =
       outpainter.run(to_network(seen.color), seen.missing, options.outpaint);
   if (filled.image.shape().pixels() == 0) return false;
-  Image picture = from_network(filled.image);
-  if (is_grey(points)) picture = grey_of(picture);
+  const Image picture = muted(from_network(filled.image), color_limit(points));
   support.view.color = continue_colors(seen.color, picture, seen.missing, options.colors);
   support.report.outpaint = filled.report;
   support.report.best = filled.best;

@@ -76,8 +76,8 @@ class SceneBuilder {
 
   /// @brief Outpaints a view and makes its depth continue the cloud; the cloud stays as it is.
   /// A function of (networks, options, what was observed, cloud, pose, number). Where nothing is
-  /// missing no network is run and no pixel is to be added. Where the cloud is all grey, so is what
-  /// is outpainted.
+  /// missing no network is run and no pixel is to be added. Of a cloud without strong colours
+  /// none are outpainted (muted_colors.h).
   /// @return a view without colour when options.outpaint.progress stopped it
   SupportView outpaint(const Pose& world_from_cam, std::uint16_t number);
 

@@ -8,7 +8,7 @@
 #include "libps/core/error.h"
 #include "libps/core/random.h"
 #include "libps/geometry/point.h"
-#include "libps/scene/greys.h"
+#include "libps/scene/muted_colors.h"
 #include "libps/scene/network_view.h"
 
 namespace ps {
@@ -99,7 +99,7 @@ RenderedView ViewRenderer::render(const pcl::PointCloud<Point>& cloud, const Int
   const Intrinsics seen = network_lens(lens);
   const Splat coarse = splat(cloud, seen, world_from_cam, options_.splat);
   Image base = resampled(refined(coarse), seen, lens);
-  if (!options_.as_published && is_grey(cloud)) base = grey_of(base);
+  if (!options_.as_published) base = muted(base, color_limit(cloud));
   constexpr double kSeam = 4;  // of the networks' pixels
   view.color =
       options_.as_published ? base : completed(view.splat, base, kSeam * lens.fx / seen.fx);

@@ -44,8 +44,8 @@ RenderedView cloud_picture(const pcl::PointCloud<Point>& cloud, const Intrinsics
 /// Where the cloud is seen, it is shown as it is, at the view's full size: a wide splat shows
 /// slanted surfaces some pixels beside their place, as the nearest of its points wins, and a
 /// network repaints what is known. What is missing is the refiner's, which sees 256 pixels along
-/// the short side, moved towards the colours at the seam, and grey where all of the cloud is. Not
-/// for two threads at once.
+/// the short side, moved towards the colours at the seam, without colours stronger than the cloud's
+/// (muted_colors.h). Not for two threads at once.
 class ViewRenderer {
  public:
   /// @param refiner  must outlive this; null = no network: what the cloud shows, and the background

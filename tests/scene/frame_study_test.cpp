@@ -182,6 +182,13 @@ TEST(FrameStudy, gives_up_where_half_would_be_refused) {
   EXPECT_TRUE(any_refused(study_frames(source_of(views)))) << "two of ten are not half";
 }
 
+TEST(FrameStudy, a_frame_far_from_the_others_is_alone) {
+  std::vector<View> views = frames();
+  views[6].world_from_cam.translation().x() += 50;
+  const FrameStudy study = study_frames(source_of(views));
+  for (std::size_t i = 0; i < views.size(); ++i) EXPECT_EQ(study.words[i].alone, i == 6) << i;
+}
+
 TEST(FrameStudy, frames_without_a_pair_are_not_what_is_usual) {
   std::vector<View> views = frames();
   for (std::size_t i = 0; i < views.size(); ++i) {
