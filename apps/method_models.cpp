@@ -25,8 +25,8 @@ fs::path rgb_weights(const std::string& weights) {
   const fs::path beside = fs::path(weights) / kRgb;
   if (!weights.empty() && fs::exists(beside, ignored)) return beside;
   if (const auto shipped = find_default_weights(kRgb)) return *shipped;
-  throw Error("--methods rgb", "its weights do not come with the program",
-              "--weights DIR with rgb.safetensors, of `train pixelcnn --codes colours`");
+  throw Error("--methods rgb", "its weights, rgb.safetensors, are missing",
+              "--weights DIR with them, of `train pixelcnn --codes colours`");
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 
 namespace ps::apps {
 
-/// @return view_method_names() without those whose weights do not come with the program
+/// @return view_method_names(), without `rgb` where its weights are missing
 std::vector<std::string> default_methods();
 
 /// @brief The networks that view methods need (libps/scene/view_methods.h), from weights files.

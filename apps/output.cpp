@@ -43,13 +43,13 @@ std::string series_of(const fs::path& file) {
   return std::string(name.begin(), first) + '#' + std::string(last, name.end());
 }
 
-/// Runs `task`; failures of the file system become ps::Error.
+/// Runs `task`; failures of the file system become ps::WriteError.
 /// @param shown  what a path is called in the message
 template <class Task, class Shown>
 auto on_files(Task task, Shown shown) try {
   return task();
 } catch (const fs::filesystem_error& error) {
-  throw Error(shown(error.path1()), error.code().message());
+  throw WriteError(shown(error.path1()), error.code().message());
 }
 
 /// Throws ps::Error where merge() would meet a file in place of a folder or the other way round, so

@@ -148,7 +148,7 @@ PlanOptions SceneArguments::plan() const {
 
 std::optional<BudgetOptions> SceneArguments::point_budget() const {
   BudgetOptions options;
-  const std::string text = budget.value_or(no_outpaint ? "none" : "auto");
+  const std::string text = budget_text();
   if (text == "none") return std::nullopt;
   if (text == "auto") return options;
   const auto equals = text.find('=');
@@ -171,7 +171,7 @@ SceneOptions SceneArguments::scene(const Context& context) const {
   SceneOptions options;
   options.cloud.lift = input.lift;
   outpaint::OutpaintOptions& o = options.outpaint;
-  const std::string number = samples.value_or(refine_best > 0 ? "50" : "auto");
+  const std::string number = samples_text();
   if (number == "auto") {
     o.until_settled = true;
   } else {

@@ -46,6 +46,10 @@ struct SceneArguments {
   void add_sampling_options(CLI::App& verb);  ///< sampling, weights
   void add_outpaint_options(CLI::App& verb);  ///< the same, and selection
 
+  /// What was asked for, or else what is done then.
+  std::string samples_text() const { return samples.value_or(refine_best > 0 ? "50" : "auto"); }
+  std::string budget_text() const { return budget.value_or(no_outpaint ? "none" : "auto"); }
+
   /// Throw CLI::ValidationError (wrong usage) where a text is none of what is allowed.
   PlanOptions plan() const;
   SceneOptions scene(const Context& context) const;

@@ -10,13 +10,13 @@
 #include "apps/frame_list.h"
 #include "apps/lift_arguments.h"
 #include "apps/program.h"
+#include "apps/scene_report.h"
 #include "io/depth_file.h"
 #include "io/photo.h"
 #include "io/rgbd_folder.h"
 #include "io/trajectory.h"
 #include "libps/core/error.h"
 #include "libps/core/words.h"
-#include "libps/geometry/relative_pose.h"
 #include "libps/scene/photo_depth.h"
 #include "libps/scene/second_view.h"
 
@@ -98,6 +98,7 @@ View read_one(const SceneInputArguments& a, const std::string& file, const std::
   view.intrinsics = lens.intrinsics;
   if (photo.color.size() != photo.size) {
     view.intrinsics = resized(lens.intrinsics, photo.color.cols, photo.color.rows);
+    report["shrunk_to"] = {photo.color.cols, photo.color.rows};
   }
   report["lens"] = to_json(lens);
   if (depth.empty()) {
@@ -167,21 +168,24 @@ SceneInput read_frames(const SceneInputArguments& a, const Context& context) {
   return input;
 }
 
+void warn_of_poor_pose(const SecondPose& found, const Intrinsics& lens, const Context& context) {
+  constexpr double kPoor = .01;  // of the long side
+  if (found.reprojection_error <= kPoor * std::max(lens.width, lens.height)) return;
+  context.warn("--second: its pose is poor: half of its matches miss by more than " +
+               in_digits(found.reprojection_error, 2) +
+               " pixels; what both photos show may be seen twice (--second-pose gives a true one)");
+}
+
 /// The second photo, placed where it was taken, its depth on the first one's scale.
 View read_second(const SceneInputArguments& a, const View& first, const DepthModel* model,
                  int longest, const Context& context, Json& report) {
   View second = read_one(a, a.second, a.second_depth, model, longest, context, report);
   if (a.second_pose == "auto") {
     const SecondPose found = find_second_pose(first, second.color, second.intrinsics, second.depth);
+    warn_of_poor_pose(found, second.intrinsics, context);
     second.world_from_cam = found.world_from_cam;
     second.depth *= found.depth_scale;
-    report["pose"] = {{"from", "auto"},
-                      {"matches", found.matches},
-                      {"inliers", found.inliers},
-                      {"reprojection_error", found.reprojection_error},
-                      {"depth_error", found.depth_error},
-                      {"depth_scale", found.depth_scale},
-                      {"depth_spread", found.depth_spread}};
+    report["pose"] = to_json(found);
   } else {
     const StampedPose given = read_trajectory(a.second_pose).front();
     second.world_from_cam = first.world_from_cam * given.world_from_cam;

@@ -72,4 +72,14 @@ std::vector<std::string> pictures_of_earlier_scene(const std::filesystem::path& 
   return names;
 }
 
+Json to_json(const SecondPose& found) {
+  return {{"from", "auto"},
+          {"matches", found.matches},
+          {"inliers", found.inliers},
+          {"reprojection_error", found.reprojection_error},
+          {"depth_error", found.depth_error},
+          {"depth_scale", found.depth_scale},
+          {"depth_spread", found.depth_spread}};
+}
+
 }  // namespace ps::apps

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/report.h"
+#include "libps/geometry/relative_pose.h"
 #include "libps/scene/scene_builder.h"
 
 namespace ps::apps {
@@ -25,5 +26,8 @@ Json to_json(const AddReport& report);
 /// other views or videos would not replace.
 /// @return relative names; none where there is no report of a scene
 std::vector<std::string> pictures_of_earlier_scene(const std::filesystem::path& folder);
+
+/// Of a second photo's pose that was found.
+Json to_json(const SecondPose& found);
 
 }  // namespace ps::apps

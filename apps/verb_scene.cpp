@@ -220,7 +220,9 @@ void make_scene(const SceneArguments& a, const Json& settings, SceneMaker& scene
 }
 
 void run_scene(const SceneArguments& a, const CLI::App& verb, const Context& context) {
-  const Json settings = settings_of(verb, context);
+  Json settings = settings_of(verb, context);
+  settings["options"]["samples"] = a.samples_text();
+  settings["options"]["budget"] = a.budget_text();
   SceneMaker scene(a, settings, context);
   check_paths(a);
   note_interrupts();
@@ -229,8 +231,8 @@ void run_scene(const SceneArguments& a, const CLI::App& verb, const Context& con
   } catch (const WriteError& error) {  // once there is room, the rest need not be done again
     if (!scene.has_begun()) throw;
     throw WriteError(error.file(), error.why(),
-                     "room for it; the same command with --resume goes on with what was "
-                     "outpainted so far");
+                     "room for it, and leave to write; the same command with --resume goes on with "
+                     "what was outpainted so far");
   } catch (const Error&) {
     scene.finish();  // the same command would fail again
     throw;

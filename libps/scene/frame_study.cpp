@@ -100,7 +100,16 @@ void tell_contradictions(const std::vector<FramePair>& pairs, std::vector<FrameW
   const std::vector<double> shares = contradictions(pairs, *words, kJuries[1]);
   for (std::size_t i = 0; i < words->size(); ++i) {
     (*words)[i].contradicted = std::isnan(shares[i]) ? 0 : shares[i];
-    (*words)[i].alone = std::isnan(shares[i]);
+  }
+}
+
+/// Of frames with depth, those that no frame shares a surface with.
+void tell_alone(const std::vector<SmallFrame>& frames, const std::vector<FramePair>& pairs,
+                std::vector<FrameWord>* words) {
+  for (std::size_t i = 0; i < frames.size(); ++i) (*words)[i].alone = frames[i].usable();
+  for (const FramePair& pair : pairs) {
+    if (pair.agree + pair.before < kLeastOverlap) continue;
+    (*words)[pair.a].alone = (*words)[pair.b].alone = false;
   }
 }
 
@@ -201,6 +210,7 @@ FrameStudy without_advice(const std::vector<SmallFrame>& frames, const FrameStud
   silent.words.resize(frames.size());
   hold_against_each_other(frames, silent.words, options.tolerance, &pairs);
   tell_contradictions(pairs, &silent.words);
+  tell_alone(frames, pairs, &silent.words);
   return silent;
 }
 
@@ -220,6 +230,7 @@ FrameStudy study_frames(const ViewSource& source, const FrameStudyOptions& optio
   const std::vector<FramePair> planned = plan_pairs(frames, options.partners);
   std::vector<FramePair> pairs = planned;
   hold_against_each_other(frames, study.words, options.tolerance, &pairs);
+  tell_alone(frames, pairs, &study.words);
   refuse(pairs, options, &study);
   if (study.gave_up && options.scales) judge_by_even_scales(frames, options, pairs, &study);
   if (study.gave_up) return without_advice(frames, options, planned);

@@ -33,7 +33,7 @@ struct FrameWord {
   double scale = 1;            ///< its depths times this agree with the others'
   double contradicted = 0;     ///< share, in the middle one of its pairs; 0 without a pair
   bool refused = false;
-  bool alone = false;  ///< it shares no surface with any frame it was held against
+  bool alone = false;  ///< it has depth, but no frame that it was held against shares a surface
 };
 
 struct FrameStudy {

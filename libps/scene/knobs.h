@@ -20,9 +20,9 @@ struct OutpaintKnobOptions {
   int selection_samples = 16;     ///< completions that selections choose from
 };
 
-/// @brief How many completions are drawn of a view, one being kept by consensus: 1 to 100, or until settled. The
-/// target is outpainted from the input alone and rendered from the cloud, as scenes are. PSNR where
-/// the input does not see the target, and of all of it (and LPIPS).
+/// @brief How many completions are drawn of a view, one being kept by consensus: 1 to 100, or until
+/// settled. The target is outpainted from the input alone and rendered from the cloud, as scenes
+/// are. PSNR where the input does not see the target, and of all of it (and LPIPS).
 Knob samples_knob(const OutpaintKnobOptions& options);
 
 /// @brief How much sampling is held to the nearest seen colours (outpaint::OutpaintOptions). Scores

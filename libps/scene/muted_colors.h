@@ -17,7 +17,7 @@ struct Point;
 ///
 /// A colour's strength is the greatest less the least of its channels. The limit is the strength
 /// that one point in a thousand exceeds (of points evenly spread over the cloud, if there are
-/// many); 0 where that is within two of 255 levels; above .1 it rises ten times as fast, so that
+/// many); 0 where that is within two of 255 levels; above .1 it rises eleven times as fast, so that
 /// ordinary photos set none.
 /// @return from 0 to 1; 1 for an empty cloud
 float color_limit(const pcl::PointCloud<Point>& cloud);

@@ -5,6 +5,7 @@
 # In it, `pixelsynth` is the program, $S the samples, and these are claims:
 set -euo pipefail
 program=$1 S=$2 snippet=$3
+shared=$(dirname "$(realpath "${BASH_SOURCE[0]}")")/../../../shared
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 mkdir "$work/here"
@@ -61,5 +62,6 @@ size_of() { ffprobe -v error -show_entries stream=width,height -of csv=p=0:s=x "
 pixel() { ffmpeg -v error -i "$1" -vf "crop=1:1:$2:$3" -f rawvideo -pix_fmt rgb24 - | od -An -tu1 | xargs || echo "no pixel of $1"; }
 
 needs() { command -v "$1" >/dev/null || { echo "skipped: $1 is not installed"; exit 77; }; }
+needs_shared() { [ -e "$shared/$1" ] || { echo "skipped: ../shared/$1 is not there"; exit 77; }; }
 
 eval "$snippet"

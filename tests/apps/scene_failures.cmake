@@ -42,7 +42,7 @@ app_test(scene_goes_on_after_a_full_disk_to_the_same_bytes "${killed}
   killed_by INT
   cp -r s.work before
   trap '' XFSZ
-  (ulimit -f 1000; fails 1 '^pixelsynth: [^ ]*/s.work/[234].safetensors: writing failed: File too large; expected room for it; the same command with --resume goes on' -q scene $args -o s --resume)
+  (ulimit -f 1000; fails 1 '^pixelsynth: [^ ]*/s.work/[234].safetensors: writing failed: File too large; expected room for it, and leave to write; the same command with --resume goes on' -q scene $args -o s --resume)
   diff -r s.work before
   rm -r before
   ! (ulimit -f 2000; $program -q scene $args -o s --resume 2>$work/err) || complain 'it had room'
@@ -85,7 +85,7 @@ app_test(scene_finds_where_a_second_photo_was_taken [=[
   works $args --second-pose auto -o again
   cmp again/scene.ply s/scene.ply]=])
 app_test(scene_draws_no_more_completions_than_help [=[
-  works scene $S/photo.png --fov 70 -o s --samples auto --directions left
+  works scene $S/photo.png --fov 70 -o s --directions left
   drawn=$(sed -n 's/^ *"drawn": \([0-9]*\).*/\1/p' s/report.json)
   is $drawn -ge 2
   is $drawn -le 50
@@ -115,6 +115,8 @@ app_test(scene_of_a_huge_photo_holds_no_more_of_it_than_it_can_use [=[
   needs ffmpeg
   ffmpeg -v error -i $S/photo.png -vf scale=8000:-1 -frames:v 1 big.jpg
   works scene big.jpg --fov 70 --weights $S/depth.safetensors --no-outpaint --view-size 256 --directions left -o s
+  works scene big.jpg --fov 70 --weights $S/depth.safetensors --no-outpaint --view-size 250 --directions left -o t
+  grep -A1 '"shrunk_to"' t/report.json | grep -q 500
   grep -A3 '"shrunk_to"' s/report.json | tr -d ' \n' | grep -q '"shrunk_to":.512,341' || complain "it is shrunk to another size"
   is "$(sed -n '/^  "lens"/,/}/p' s/report.json | sed -n 's/^ *"width": \([0-9]*\).*/\1/p')" -eq 8000
   is "$(size_of s/views/input.png)" = 256x171

@@ -182,6 +182,15 @@ TEST(FrameStudy, gives_up_where_half_would_be_refused) {
   EXPECT_TRUE(any_refused(study_frames(source_of(views)))) << "two of ten are not half";
 }
 
+TEST(FrameStudy, frames_without_depth_or_whose_partners_are_refused_are_not_alone) {
+  std::vector<View> views = frames();
+  views[2] = View();
+  for (const int i : {1, 6}) lose(&views[static_cast<std::size_t>(i)], i);
+  const FrameStudy study = study_frames(source_of(views));
+  EXPECT_TRUE(any_refused(study));
+  for (const FrameWord& word : study.words) EXPECT_FALSE(word.alone);
+}
+
 TEST(FrameStudy, a_frame_far_from_the_others_is_alone) {
   std::vector<View> views = frames();
   views[6].world_from_cam.translation().x() += 50;
