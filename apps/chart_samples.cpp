@@ -37,7 +37,7 @@ View load_with_depth(const ChosenFrames& frames, std::size_t i) {
 }
 
 ChartSamples frame_samples(std::shared_ptr<const ChosenFrames> frames, std::size_t count,
-                           const Context& context) {
+                           bool with_others, const Context& context) {
   constexpr std::size_t kApart = 3;
   const auto pose = [&](std::size_t i) { return frames->pose(i); };
   const auto sets = std::make_shared<std::vector<FrameSet>>(
@@ -52,6 +52,7 @@ ChartSamples frame_samples(std::shared_ptr<const ChosenFrames> frames, std::size
                          {},
                          {}};
     check_lens(sample.target, sample.input, frames->name(set.pair.target));
+    if (!with_others) return sample;
     for (const std::size_t i : set.others) sample.others.push_back(view(i));
     return sample;
   };
@@ -61,7 +62,7 @@ ChartSamples frame_samples(std::shared_ptr<const ChosenFrames> frames, std::size
 ChartSamples frame_samples(const FramesArguments& arguments, std::size_t count,
                            const Context& context) {
   const auto frames = std::make_shared<ChosenFrames>(choose_posed_frames(arguments, context));
-  ChartSamples samples = frame_samples(frames, count, context);
+  ChartSamples samples = frame_samples(frames, count, true, context);
   if (samples.count == 0) {
     throw Error(arguments.data, "no two frames are a pair",
                 "two of one world that look 20 to 60 degrees apart, within a metre");

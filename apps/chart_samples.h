@@ -22,8 +22,9 @@ struct ChartSamples {
 ChartSamples room_samples(std::size_t count, int side, const Context& context);
 
 /// @brief Pairs of these frames, which must have depth; `count` at most, and there may be none.
+/// @param with_others  whether the frames beside a pair are loaded too
 ChartSamples frame_samples(std::shared_ptr<const ChosenFrames> frames, std::size_t count,
-                           const Context& context);
+                           bool with_others, const Context& context);
 
 /// @brief Loads a frame. Throws ps::Error when it is unsound or has no depth.
 View load_with_depth(const ChosenFrames& frames, std::size_t chosen_frame);

@@ -39,7 +39,7 @@ void load_pairs(const std::shared_ptr<const ChosenFrames>& frames,
                 const stress::SuiteOptions& options, const Context& context,
                 stress::GivenFrames* given, Json* report) {
   const ChartSamples samples =
-      frame_samples(frames, static_cast<std::size_t>(options.photos), context);
+      frame_samples(frames, static_cast<std::size_t>(options.photos), false, context);
   for (std::size_t i = 0; i < samples.count; ++i) {
     throw_if_interrupted();
     KnobSample sample = samples.load(i);

@@ -165,8 +165,7 @@ void add_stress(CLI::App& program, const Context& context) {
       "Every step is also held to what must always be: no crash, everything finite, the same bytes "
       "on one thread and on two (with --threads 1 it runs on one alone), nothing observed "
       "overwritten by what was invented (beside seams, 1 % of it may be shown otherwise; of DATA, "
-      "whose "
-      "photos are farther apart, 10 %). Exit status 1 if any is not, after everything is "
+      "whose photos are farther apart, 10 %). Exit status 1 if any is not, after everything is "
       "written.");
   auto a = std::make_shared<StressArguments>();
   a->frames.add_to(*verb, "procedural rooms");

@@ -62,18 +62,22 @@ Knob outpaint_knob(Knob knob, const std::vector<OutpaintKnobOptions>& settings) 
   return knob;
 }
 
+OutpaintKnobOptions without_judges(OutpaintKnobOptions options) {
+  options.networks.outpaint.scorers.clear();
+  return options;
+}
+
 }  // namespace
 
 Knob samples_knob(const OutpaintKnobOptions& options) {
   Knob knob = {"samples", "Completions drawn of a view, of which the best is kept."};
   std::vector<OutpaintKnobOptions> settings;
   for (const int samples : {1, 4, 16, 50, 100}) {
-    settings.push_back(options);
+    settings.push_back(without_judges(options));
     settings.back().scene.outpaint.samples = samples;
-    settings.back().networks.outpaint.scorers.clear();
     knob.settings.push_back({std::to_string(samples), false});
   }
-  settings.push_back(settings.back());
+  settings.push_back(without_judges(options));
   settings.back().scene.outpaint.samples = outpaint::OutpaintOptions().samples;
   settings.back().scene.outpaint.until_settled = true;
   knob.settings.push_back({"auto", true});
@@ -84,9 +88,8 @@ Knob guidance_knob(const OutpaintKnobOptions& options) {
   Knob knob = {"guidance", "How much sampling is held to the nearest seen colours."};
   std::vector<OutpaintKnobOptions> settings;
   for (const double guidance : {0.0, 0.25, 1.0, 4.0, 16.0}) {
-    settings.push_back(options);
+    settings.push_back(without_judges(options));
     settings.back().scene.outpaint.guidance = guidance;
-    settings.back().networks.outpaint.scorers.clear();
     knob.settings.push_back(
         {in_digits(guidance), guidance == outpaint::OutpaintOptions().guidance});
   }

@@ -8,20 +8,12 @@
 
 #include "libps/scene/stress_axes.h"
 #include "libps/scene/stress_suite.h"
+#include "tests/scene/tiny_suite.h"
 
 namespace ps::stress {
 namespace {
 
 using Numbers = std::vector<std::size_t>;
-
-SuiteOptions tiny_suite() {
-  SuiteOptions options;
-  options.rooms = options.photos = 1;
-  options.frames = 4;
-  options.held_out = 1;
-  options.size = {48, 36};
-  return options;
-}
 
 /// Frames that stand so many metres apart, in a row.
 std::function<Pose(std::size_t)> row_of(double metres) {

@@ -13,6 +13,7 @@
 #include "libps/geometry/point.h"
 #include "libps/scene/stress_axes.h"
 #include "libps/scene/stress_suite.h"
+#include "tests/scene/tiny_suite.h"
 
 namespace ps::stress {
 namespace {
@@ -176,15 +177,6 @@ TEST(Stress, pictures_have_digests_whatever_their_colours) {
     EXPECT_TRUE(digests.insert(digest_of(other)).second) << x;
   }
   EXPECT_EQ(digest_of(picture), digest_of(picture.clone()));
-}
-
-SuiteOptions tiny_suite() {
-  SuiteOptions options;
-  options.rooms = options.photos = 1;
-  options.frames = 4;
-  options.held_out = 1;
-  options.size = {48, 36};
-  return options;
 }
 
 TEST(StressAxes, have_unlike_names_rising_values_and_ours_first) {
