@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "libps/train/picture_loops.h"
+
 namespace ps::train {
 namespace {
 
@@ -15,16 +17,13 @@ void jitter(Tensor& color, torch::Generator& generator) {
   const auto each = [&](double low, double high) {
     return uniform(n, low, high, generator).view({n, 1, 1, 1}).to(color.device());
   };
-  Tensor x = ((color + 1) / 2).clamp(1e-4, 1);
-  x = x.pow(torch::exp(each(-.35, .35))) * torch::exp(each(-.3, .3));
-  const Tensor tint =
-      torch::exp(torch::randn({n, 3, 1, 1}, generator).mul_(.06)).to(color.device());
-  x = x * tint;
-  const Tensor grey = x.mean(1, true);
-  x = grey + (x - grey) * each(.5, 1.4);
-  const Tensor mean = x.mean({1, 2, 3}, true);
-  x = mean + (x - mean) * each(.75, 1.25);
-  color = x.clamp_(0, 1).mul_(2).sub_(1).contiguous(torch::MemoryFormat::ChannelsLast);
+  Tints tints;
+  tints.gamma = torch::exp(each(-.35, .35));
+  tints.gain = torch::exp(each(-.3, .3));
+  tints.tint = torch::exp(torch::randn({n, 3, 1, 1}, generator).mul_(.06)).to(color.device());
+  tints.saturation = each(.5, 1.4);
+  tints.contrast = each(.75, 1.25);
+  color = tinted(color, tints);
 }
 
 /// The lens of what a picture is after a grid of theta is sampled from it. A mirrored picture's fx
@@ -53,17 +52,14 @@ void crop_and_mirror(Batch& batch, const Augmentation& how, torch::Generator& ge
   theta.select(1, 1).select(1, 1).copy_(share);
   theta.select(1, 0).select(1, 2).copy_((1 - share) * uniform(n, -1, 1, generator));
   theta.select(1, 1).select(1, 2).copy_((1 - share) * uniform(n, -1, 1, generator));
-  const Tensor grid = torch::nn::functional::affine_grid(theta.to(batch.color.device()),
-                                                         batch.color.sizes(), false);
   if (batch.lens.defined()) {
     batch.lens = resampled(batch.lens, theta.to(batch.lens.device()), batch.color.size(3));
   }
-  batch.color = torch::grid_sampler(batch.color, grid, 0, 2, false)
-                    .contiguous(torch::MemoryFormat::ChannelsLast);
+  batch.color = upright(batch.color, theta, false);
   if (batch.depth.defined()) {
     // The crop's focal length is longer by 1 / share, so canonical depth is shorter.
-    batch.depth = torch::grid_sampler(batch.depth, grid, 1, 2, false) *
-                  share.view({n, 1, 1, 1}).to(batch.color.device());
+    batch.depth =
+        upright(batch.depth, theta, true) * share.view({n, 1, 1, 1}).to(batch.color.device());
   }
 }
 

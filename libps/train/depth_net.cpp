@@ -9,6 +9,7 @@
 #include "libps/train/leaky.h"
 #include "libps/train/narrow_norm.h"
 #include "libps/train/upsample.h"
+#include "libps/train/upsampled_sum.h"
 
 namespace ps::train {
 namespace {
@@ -52,9 +53,11 @@ Tensor DepthNet::forward(const Tensor& image, bool training) const {
     skips.push_back(x);
   }
   for (int i = 0; i < kLevels; ++i) {
-    x = normed_convolution(parameters, decoder_name(i), decoder_norm(i), relu_upsample_2x(x), 1, 1,
-                           training);
-    if (decoder_norm(i).empty()) break;
+    const std::string name = decoder_name(i), norm = decoder_norm(i);
+    if (norm.empty()) {
+      return relu_upsample_to_one(x, parameters[name + ".weight"], parameters[name + ".bias"]);
+    }
+    x = normed_convolution(parameters, name, norm, relu_upsample_2x(x), 1, 1, training);
     x = torch::cat({x, skips[static_cast<std::size_t>(kLevels - 2 - i)]}, 1);
   }
   return x;

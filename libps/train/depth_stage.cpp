@@ -6,6 +6,7 @@
 
 #include "libps/core/error.h"
 #include "libps/train/depth_net.h"
+#include "libps/train/log_depth_loss.h"
 #include "libps/train/reprojection.h"
 #include "libps/train/stage.h"
 
@@ -19,29 +20,6 @@ Tensor depth_of(const Tensor& raw) { return kMinZ + (kMaxZ - kMinZ) * torch::sig
 
 /// Where depth is known; ones and zeros.
 Tensor known(const Tensor& depth) { return (depth > 0).to(torch::kFloat32); }
-
-Tensor masked_mean(const Tensor& values, const Tensor& mask) {
-  return (values * mask).sum({1, 2, 3}) / mask.sum({1, 2, 3}).clamp_min(1);
-}
-
-/// Differences of neighbours of the errors of log depth, at four scales (Ranftl and others, MiDaS,
-/// TPAMI 2022, equation 11): edges where there are edges, none where there are none.
-Tensor gradient_loss(Tensor error, Tensor mask) {
-  Tensor sum = torch::zeros({error.size(0)}, error.options());
-  using torch::indexing::None;
-  using torch::indexing::Slice;
-  for (int scale = 0; scale < 4; ++scale) {
-    for (const int axis : {2, 3}) {
-      const auto n = error.size(axis) - 1;
-      const Tensor d = error.narrow(axis, 1, n) - error.narrow(axis, 0, n);
-      sum = sum + masked_mean(d.abs(), mask.narrow(axis, 1, n) * mask.narrow(axis, 0, n));
-    }
-    const Slice every_other(None, None, 2);
-    error = error.index({Slice(), Slice(), every_other, every_other});
-    mask = mask.index({Slice(), Slice(), every_other, every_other});
-  }
-  return sum;
-}
 
 /// The middle of the known values of each example.
 Tensor masked_median(const Tensor& values, const Tensor& mask) {
@@ -84,16 +62,11 @@ class DepthStage : public Stage {
 
   /// Beside the true depth, where there is any.
   static Tensor depth_loss(const Batch& batch, const Tensor& depth, Values& values) {
-    const Tensor mask = known(batch.depth);
-    const Tensor target = torch::log(batch.depth.clamp(kMinZ, kMaxZ));
-    const Tensor error = (torch::log(depth) - target) * mask;
-    // Scale is half a guess: most of a common factor is forgiven.
-    const Tensor common = masked_mean(error, mask).view({-1, 1, 1, 1});
-    const Tensor value = masked_mean((error - 0.7 * common).abs(), mask).mean();
-    const Tensor gradient = gradient_loss(error, mask).mean();
-    values["log_l1"] = value.item<double>();
-    values["gradient"] = gradient.item<double>();
-    return value + 0.5 * gradient;
+    const Tensor truth = torch::log(batch.depth.clamp(kMinZ, kMaxZ));
+    const LogDepthLoss loss = log_depth_loss(torch::log(depth), truth, known(batch.depth));
+    values["log_l1"] = loss.value.item<double>();
+    values["gradient"] = loss.gradient.item<double>();
+    return loss.sum;
   }
 
   static Tensor mean_of_posed(const Batch& batch, const Tensor& depth) {

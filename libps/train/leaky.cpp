@@ -14,15 +14,18 @@ using torch::autograd::variable_list;
 
 constexpr std::int64_t kAtOnce = 1 << 15;
 
-PS_ANY_WIDTH void forwards(const float* x, Narrow* to, std::int64_t n, float slope) {
-  for (std::int64_t i = 0; i < n; ++i) to[i] = narrowed(chosen(x[i] > 0, x[i], x[i] * slope));
+PS_ANY_WIDTH void forwards(const Narrow* x, Narrow* to, std::int64_t n, float slope) {
+  for (std::int64_t i = 0; i < n; ++i) {
+    const float value = widened(x[i]);
+    to[i] = narrowed(chosen(value > 0, value, value * slope));
+  }
 }
 
-PS_ANY_WIDTH void backwards(const float* x, const Narrow* gradient, float* to, std::int64_t n,
+PS_ANY_WIDTH void backwards(const Narrow* x, const Narrow* gradient, Narrow* to, std::int64_t n,
                             float slope) {
   for (std::int64_t i = 0; i < n; ++i) {
     const float g = widened(gradient[i]);
-    to[i] = chosen(x[i] > 0, g, g * slope);
+    to[i] = narrowed(chosen(widened(x[i]) > 0, g, g * slope));
   }
 }
 
@@ -32,8 +35,8 @@ class Leaky : public torch::autograd::Function<Leaky> {
     const Tensor x = image.contiguous(torch::MemoryFormat::ChannelsLast);
     context->save_for_backward({x});
     context->saved_data["slope"] = slope;
-    const Tensor out = torch::empty_like(x, x.options().dtype(torch::kBFloat16));
-    const float* const from = x.data_ptr<float>();
+    const Tensor out = torch::empty_like(x);
+    const auto* const from = static_cast<const Narrow*>(x.data_ptr());
     auto* const to = static_cast<Narrow*>(out.data_ptr());
     at::parallel_for(0, x.numel(), kAtOnce, [&](std::int64_t begin, std::int64_t end) {
       forwards(from + begin, to + begin, end - begin, static_cast<float>(slope));
@@ -46,9 +49,9 @@ class Leaky : public torch::autograd::Function<Leaky> {
     const auto slope = static_cast<float>(context->saved_data["slope"].toDouble());
     const Tensor gradient = gradients[0].contiguous(torch::MemoryFormat::ChannelsLast);
     const Tensor out = torch::empty_like(x);
-    const float* const from = x.data_ptr<float>();
+    const auto* const from = static_cast<const Narrow*>(x.data_ptr());
     const auto* const above = static_cast<const Narrow*>(gradient.data_ptr());
-    float* const to = out.data_ptr<float>();
+    auto* const to = static_cast<Narrow*>(out.data_ptr());
     at::parallel_for(0, x.numel(), kAtOnce, [&](std::int64_t begin, std::int64_t end) {
       backwards(from + begin, above + begin, to + begin, end - begin, slope);
     });
@@ -59,7 +62,7 @@ class Leaky : public torch::autograd::Function<Leaky> {
 }  // namespace
 
 Tensor leaky_factor(const Tensor& x, float slope) {
-  if (!products_are_narrow() || !x.is_cpu() || x.scalar_type() != torch::kFloat32) {
+  if (!x.is_cpu() || x.scalar_type() != torch::kBFloat16) {
     return as_factor(torch::leaky_relu(x, slope));
   }
   return Leaky::apply(x, static_cast<double>(slope));

@@ -7,7 +7,7 @@
 namespace ps::train {
 
 /// @brief as_factor(torch::leaky_relu(x, slope)), digit for digit, in one pass forward and one back
-/// where products are narrow and x is of float on the CPU. It has no second derivatives.
+/// where x is of bfloat16 on the CPU. It has no second derivatives.
 /// @param x  [n, c, h, w], of any layout
 /// Throws c10::Error as torch does.
 torch::Tensor leaky_factor(const torch::Tensor& x, float slope);

@@ -36,29 +36,30 @@ PS_ANY_WIDTH void add_squares(const Narrow* x, const Narrow* pivot, std::int64_t
 }
 
 /// Adds up gradients, and gradients times x less its mean.
-PS_ANY_WIDTH void add_products(const Narrow* x, const float* gradient, const float* mean,
+PS_ANY_WIDTH void add_products(const Narrow* x, const Narrow* gradient, const float* mean,
                                std::int64_t pixels, std::int64_t c, float* sum, float* products) {
   for (std::int64_t p = 0; p < pixels; ++p, x += c, gradient += c) {
     for (std::int64_t i = 0; i < c; ++i) {
-      sum[i] += gradient[i];
-      products[i] += gradient[i] * (widened(x[i]) - mean[i]);
+      const float g = widened(gradient[i]);
+      sum[i] += g;
+      products[i] += g * (widened(x[i]) - mean[i]);
     }
   }
 }
 
-PS_ANY_WIDTH void scale(const Narrow* x, const float* by, const float* add, float* to,
+PS_ANY_WIDTH void scale(const Narrow* x, const float* by, const float* add, Narrow* to,
                         std::int64_t pixels, std::int64_t c) {
   for (std::int64_t p = 0; p < pixels; ++p, x += c, to += c) {
-    for (std::int64_t i = 0; i < c; ++i) to[i] = widened(x[i]) * by[i] + add[i];
+    for (std::int64_t i = 0; i < c; ++i) to[i] = narrowed(widened(x[i]) * by[i] + add[i]);
   }
 }
 
-PS_ANY_WIDTH void scale_back(const Narrow* x, const float* gradient, const float* by,
+PS_ANY_WIDTH void scale_back(const Narrow* x, const Narrow* gradient, const float* by,
                              const float* by_x, const float* add, Narrow* to, std::int64_t pixels,
                              std::int64_t c) {
   for (std::int64_t p = 0; p < pixels; ++p, x += c, gradient += c, to += c) {
     for (std::int64_t i = 0; i < c; ++i) {
-      to[i] = narrowed(gradient[i] * by[i] + widened(x[i]) * by_x[i] + add[i]);
+      to[i] = narrowed(widened(gradient[i]) * by[i] + widened(x[i]) * by_x[i] + add[i]);
     }
   }
 }
@@ -115,8 +116,8 @@ class NarrowNorm : public torch::autograd::Function<NarrowNorm> {
     const Tensor by = weight.detach() * root.to(torch::kFloat32);
     const Tensor add = bias.detach() - mean.to(torch::kFloat32) * by;
     context->save_for_backward({x, by, mean.to(torch::kFloat32), root.to(torch::kFloat32)});
-    const Tensor out = torch::empty_like(x, x.options().dtype(torch::kFloat32));
-    float* const to = out.data_ptr<float>();
+    const Tensor out = torch::empty_like(x);
+    auto* const to = static_cast<Narrow*>(out.data_ptr());
     over_pixels(pixels, [&, by = by.data_ptr<float>(), add = add.data_ptr<float>()](
                             std::int64_t begin, std::int64_t end) {
       scale(from + begin * c, by, add, to + begin * c, end - begin, c);
@@ -130,7 +131,7 @@ class NarrowNorm : public torch::autograd::Function<NarrowNorm> {
     const Tensor gradient = channels_last(gradients[0]);
     const std::int64_t c = x.size(1), pixels = x.numel() / c;
     const Narrow* const from = bits_of(x);
-    const float* const above = gradient.data_ptr<float>();
+    const Narrow* const above = bits_of(gradient);
     const auto sums = two_sums(pixels, c, [&](std::int64_t p, std::int64_t n, float* a, float* b) {
       add_products(from + p * c, above + p * c, mean.data_ptr<float>(), n, c, a, b);
     });
@@ -158,12 +159,13 @@ Tensor narrow_batch_norm(const Tensor& x, const Tensor& weight, const Tensor& bi
 
 Tensor normed_convolution(const Parameters& p, const std::string& name, const std::string& norm,
                           const Tensor& x, int stride, int padding, bool training) {
-  if (norm.empty()) return convolution(p, name, x, stride, padding);
   if (!training || !products_are_narrow() || !x.is_cpu()) {
-    return batch_norm(p, norm, convolution(p, name, x, stride, padding), training);
+    const Tensor wide = convolution(p, name, x, stride, padding);
+    return norm.empty() ? wide : batch_norm(p, norm, wide, training);
   }
   const Tensor product = torch::conv2d(as_factor(x), as_factor(p[name + ".weight"]),
                                        as_factor(p[name + ".bias"]), stride, padding);
+  if (norm.empty()) return product;
   return narrow_batch_norm(product, p[norm + ".weight"], p[norm + ".bias"],
                            p[norm + ".running_mean"], p[norm + ".running_var"]);
 }

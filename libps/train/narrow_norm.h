@@ -9,18 +9,18 @@
 namespace ps::train {
 
 /// @brief convolution() and, unless `norm` is empty, batch_norm() of what it gives. Where products
-/// are narrow, in training on the CPU, the norm reads the bfloat16 values that the product wrote,
-/// with sums in double, and hands it a bfloat16 gradient: neither is copied to float and back.
-/// Values differ from batch_norm()'s by rounding alone, whatever the number of threads. It has no
-/// second derivatives then.
+/// are narrow, in training on the CPU, what it gives is bfloat16, too: the norm reads the values
+/// that the product wrote, with sums in double, and nothing is copied to float and back, forwards
+/// or backwards. Values differ from batch_norm()'s by rounding alone, whatever the number of
+/// threads. It has no second derivatives then.
 /// @param x  [n, c, h, w], of any layout
-/// @return float
+/// @return bfloat16 then, else float
 Tensor normed_convolution(const Parameters& p, const std::string& name, const std::string& norm,
                           const Tensor& x, int stride, int padding, bool training);
 
 /// @brief The norm alone.
 /// @param x  [n, c, h, w] of bfloat16 on the CPU; the rest [c] of float, the running ones moved
-/// @return float, channels last
+/// @return bfloat16, channels last
 Tensor narrow_batch_norm(const Tensor& x, const Tensor& weight, const Tensor& bias,
                          const Tensor& running_mean, const Tensor& running_var);
 

@@ -7,6 +7,7 @@
 
 #include "libps/core/error.h"
 #include "libps/core/random.h"
+#include "libps/train/adam_loops.h"
 
 namespace ps::train {
 namespace {
@@ -103,43 +104,42 @@ void Adam::zero_gradients() {
   for (const auto& [name, tensor] : parameters_.trained()) tensor.mutable_grad() = Tensor();
 }
 
-bool Adam::limit_gradients() {
-  Tensor sum = torch::zeros({}, steps_.options());
+double Adam::gradient_factor() const {
+  double sum = 0;
   for (const auto& [name, tensor] : parameters_.trained()) {
-    if (tensor.grad().defined()) sum += tensor.grad().square().sum().to(sum.options());
+    if (tensor.grad().defined()) sum += sum_of_squares(tensor.grad());
   }
-  const double norm = std::sqrt(sum.item<double>());
-  if (!std::isfinite(norm)) return false;
-  if (options_.gradient_limit > 0 && norm > options_.gradient_limit) {
-    for (const auto& [name, tensor] : parameters_.trained()) {
-      if (tensor.grad().defined()) tensor.grad().mul_(options_.gradient_limit / norm);
-    }
-  }
-  return true;
+  const double norm = std::sqrt(sum);
+  const bool over = options_.gradient_limit > 0 && norm > options_.gradient_limit;
+  return over ? options_.gradient_limit / norm : std::isfinite(norm) ? 1 : 0;
 }
 
 bool Adam::step(double learning_rate) {
   const torch::NoGradGuard guard;
-  if (!limit_gradients()) return false;
+  const double factor = gradient_factor();
+  if (factor == 0) return false;
   steps_ += 1;
   const double t = steps_.item<double>();
   const double one = 1 - std::pow(options_.beta1, t), two = 1 - std::pow(options_.beta2, t);
-  for (const auto& [name, tensor] : parameters_.trained()) {
-    if (!tensor.grad().defined()) continue;
-    const Tensor gradient = tensor.grad();
-    Tensor value = tensor.detach();
-    Tensor& first = first_[name];
-    Tensor& second = second_[name];
-    first.lerp_(gradient, 1 - options_.beta1);
-    second.mul_(options_.beta2).addcmul_(gradient, gradient, 1 - options_.beta2);
-    if (options_.weight_decay > 0 && value.dim() > 1) {
-      value.mul_(1 - learning_rate * options_.weight_decay);
-    }
-    const Tensor root = (second / two).sqrt_().add_(options_.eps);
-    value.addcdiv_(first, root, -learning_rate / one);
-  }
   const double decay = std::min(options_.average_decay, (1 + t) / (10 + t));
-  for (auto& [name, average] : average_) average.lerp_(parameters_[name].detach(), 1 - decay);
+  AdamRates rates;
+  rates.gradient = static_cast<float>(factor);
+  rates.beta1 = static_cast<float>(options_.beta1);
+  rates.beta2 = static_cast<float>(options_.beta2);
+  rates.rate = static_cast<float>(learning_rate / one);
+  rates.correction = static_cast<float>(1 / two);
+  rates.eps = static_cast<float>(options_.eps);
+  rates.to_average = static_cast<float>(1 - decay);
+  for (auto& [name, average] : average_) {
+    const Tensor value = parameters_[name].detach(), gradient = parameters_[name].grad();
+    if (!gradient.defined()) {
+      average.lerp_(value, 1 - decay);
+      continue;
+    }
+    const bool decays = options_.weight_decay > 0 && value.dim() > 1;
+    rates.shrink = decays ? static_cast<float>(1 - learning_rate * options_.weight_decay) : 1;
+    move_along(gradient, value, first_[name], second_[name], average, rates);
+  }
   return true;
 }
 

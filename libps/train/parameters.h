@@ -76,7 +76,8 @@ class Adam {
   void load(const TensorsByName& values, const std::string& where);
 
  private:
-  bool limit_gradients();
+  /// What gradients are multiplied by to keep to the limit; 0 where they are not finite.
+  double gradient_factor() const;
 
   Parameters& parameters_;
   Options options_;

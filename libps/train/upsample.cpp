@@ -52,15 +52,15 @@ Tensor empty_like_of(const Tensor& x, std::int64_t h, std::int64_t w) {
 
 /// For each two rows of the output: blend(near row, far row, between, values), then
 /// spread(between, row of the output, w, c).
-template <class To, class Blend, class Spread>
-void for_row_pairs(const Tensor& x, To* to, const Blend& blend, const Spread& spread) {
+template <class Value, class Blend, class Spread>
+void for_row_pairs(const Tensor& x, Value* to, const Blend& blend, const Spread& spread) {
   const std::int64_t c = x.size(1), h = x.size(2), w = x.size(3), row = w * c;
-  const float* const from = x.data_ptr<float>();
+  const auto* const from = static_cast<const Value*>(x.data_ptr());
   at::parallel_for(0, x.size(0) * h, 1, [&](std::int64_t begin, std::int64_t end) {
     std::vector<float> mixed(static_cast<std::size_t>(row));
     for (std::int64_t i = begin; i < end; ++i) {
       const std::int64_t y = i % h;
-      const float* const at = from + i * row;
+      const Value* const at = from + i * row;
       for (const std::int64_t below : {0, 1}) {
         const bool inside = below != 0 ? y + 1 < h : y > 0;
         const std::int64_t step = below != 0 ? row : -row;
@@ -119,10 +119,11 @@ class Upsample : public torch::autograd::Function<Upsample> {
 };
 
 /// to = kNear * near + kFar * far, of what is above 0
-PS_ANY_WIDTH void rectified_blend(const float* near, const float* far, float* to, std::int64_t n) {
+PS_ANY_WIDTH void rectified_blend(const Narrow* near, const Narrow* far, float* to,
+                                  std::int64_t n) {
   for (std::int64_t i = 0; i < n; ++i) {
-    const float a = chosen(near[i] < 0, 0, near[i]), b = chosen(far[i] < 0, 0, far[i]);
-    to[i] = kNear * a + kFar * b;
+    const float a = widened(near[i]), b = widened(far[i]);
+    to[i] = kNear * chosen(a < 0, 0, a) + kFar * chosen(b < 0, 0, b);
   }
 }
 
@@ -143,8 +144,20 @@ PS_ANY_WIDTH void mix_rows(const Narrow* a, const Narrow* b, const Narrow* d, co
   }
 }
 
-PS_ANY_WIDTH void cut_off(const float* x, float* gradient, std::int64_t n) {
-  for (std::int64_t i = 0; i < n; ++i) gradient[i] = chosen(x[i] <= 0, 0, gradient[i]);
+/// As gather_back(), where x was above 0.
+PS_ANY_WIDTH void gather_rectified(const float* row, const Narrow* x, Narrow* to, std::int64_t w,
+                                   std::int64_t c) {
+  const std::int64_t last = 2 * w - 1;
+  for (std::int64_t p = 0; p < w; ++p, x += c, to += c) {
+    const float* const a = row + std::max<std::int64_t>(2 * p - 1, 0) * c;
+    const float* const b = row + 2 * p * c;
+    const float* const d = row + (2 * p + 1) * c;
+    const float* const e = row + std::min(2 * p + 2, last) * c;
+    for (std::int64_t i = 0; i < c; ++i) {
+      const float sum = kNear * (b[i] + d[i]) + kFar * (a[i] + e[i]);
+      to[i] = narrowed(chosen(widened(x[i]) <= 0, 0, sum));
+    }
+  }
 }
 
 class ReluUpsample : public torch::autograd::Function<ReluUpsample> {
@@ -152,9 +165,7 @@ class ReluUpsample : public torch::autograd::Function<ReluUpsample> {
   static Tensor forward(torch::autograd::AutogradContext* context, const Tensor& image) {
     const Tensor x = channels_last(image);
     context->save_for_backward({x});
-    const Tensor out =
-        torch::empty({x.size(0), x.size(1), 2 * x.size(2), 2 * x.size(3)},
-                     x.options().dtype(torch::kBFloat16), torch::MemoryFormat::ChannelsLast);
+    const Tensor out = empty_like_of(x, 2 * x.size(2), 2 * x.size(3));
     for_row_pairs(x, static_cast<Narrow*>(out.data_ptr()), rectified_blend, widen_to_narrow);
     return out;
   }
@@ -163,12 +174,10 @@ class ReluUpsample : public torch::autograd::Function<ReluUpsample> {
                                                  torch::autograd::variable_list gradients) {
     const Tensor x = context->get_saved_variables()[0], g = channels_last(gradients[0]);
     const Tensor out = torch::empty_like(x);
-    const float* const cut = x.data_ptr<float>();
-    float* const to = out.data_ptr<float>();
-    const std::int64_t c = x.size(1), w = x.size(3);
+    const auto* const from = static_cast<const Narrow*>(x.data_ptr());
+    auto* const to = static_cast<Narrow*>(out.data_ptr());
     const auto gather = [&](const float* mixed, std::int64_t first) {
-      gather_back(mixed, to + first, w, c);
-      cut_off(cut + first, to + first, w * c);
+      gather_rectified(mixed, from + first, to + first, x.size(3), x.size(1));
     };
     for_rows_back(static_cast<const Narrow*>(g.data_ptr()), x, mix_rows, gather);
     return {out};
@@ -178,7 +187,7 @@ class ReluUpsample : public torch::autograd::Function<ReluUpsample> {
 }  // namespace
 
 Tensor relu_upsample_2x(const Tensor& x) {
-  if (!products_are_narrow() || !x.is_cpu() || x.scalar_type() != torch::kFloat32) {
+  if (!x.is_cpu() || x.scalar_type() != torch::kBFloat16) {
     return as_factor(upsample_2x(torch::relu(x)));
   }
   return ReluUpsample::apply(x);

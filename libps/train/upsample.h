@@ -15,7 +15,7 @@ namespace ps::train {
 torch::Tensor upsample_2x(const torch::Tensor& x);
 
 /// @brief as_factor(upsample_2x(torch::relu(x))), digit for digit, in one pass forward and one back
-/// where products are narrow and x is of float on the CPU. It has no second derivatives.
+/// where x is of bfloat16 on the CPU (blended in float). It has no second derivatives.
 /// @param x  [n, c, h, w], of any layout
 /// @return [n, c, 2 h, 2 w]
 /// Throws c10::Error as torch does.

@@ -12,6 +12,7 @@
 #include "libps/train/leaky.h"
 #include "libps/train/narrow_norm.h"
 #include "libps/train/upsample.h"
+#include "libps/train/upsampled_sum.h"
 
 namespace ps::train {
 namespace {
@@ -36,7 +37,7 @@ void expect_same_digits(const Ours& ours, const Theirs& theirs) {
   const NarrowProducts on(true);
   for (const auto& shape : kShapes) {
     for (const bool last : {false, true}) {
-      const Tensor x = signal(shape, 1, last).requires_grad_();
+      const Tensor x = signal(shape, 1, last).to(torch::kBFloat16).requires_grad_();
       const Tensor a = ours(x), b = theirs(x);
       EXPECT_EQ(a.scalar_type(), torch::kBFloat16);
       EXPECT_TRUE(torch::equal(a, b)) << shape;
@@ -46,13 +47,15 @@ void expect_same_digits(const Ours& ours, const Theirs& theirs) {
 }
 
 TEST(ReluUpsample, gives_libtorchs_digits_and_their_gradients) {
-  expect_same_digits([](const Tensor& x) { return relu_upsample_2x(x); },
-                     [](const Tensor& x) { return as_factor(upsample_2x(torch::relu(x))); });
+  expect_same_digits(
+      [](const Tensor& x) { return relu_upsample_2x(x); },
+      [](const Tensor& x) { return as_factor(upsample_2x(torch::relu(x.to(torch::kFloat32)))); });
 }
 
 TEST(LeakyFactor, gives_libtorchs_digits_and_their_gradients) {
-  expect_same_digits([](const Tensor& x) { return leaky_factor(x, .2F); },
-                     [](const Tensor& x) { return as_factor(torch::leaky_relu(x, .2)); });
+  expect_same_digits(
+      [](const Tensor& x) { return leaky_factor(x, .2F); },
+      [](const Tensor& x) { return as_factor(torch::leaky_relu(x.to(torch::kFloat32), .2)); });
 }
 
 TEST(FusedLayers, leave_wide_products_as_they_are) {
@@ -64,7 +67,8 @@ TEST(FusedLayers, leave_wide_products_as_they_are) {
 TEST(LeakyFactor, hands_on_what_is_not_finite) {
   const NarrowProducts on(true);
   const float far = std::numeric_limits<float>::infinity();
-  const Tensor x = torch::tensor({far, -far, std::nanf("")}).view({1, 3, 1, 1});
+  const Tensor x =
+      torch::tensor({far, -far, std::nanf("")}).view({1, 3, 1, 1}).to(torch::kBFloat16);
   EXPECT_TRUE(
       torch::equal(torch::isfinite(leaky_factor(x, .2F)), torch::zeros({1, 3, 1, 1}).gt(1)));
   EXPECT_TRUE(torch::isnan(leaky_factor(x, .2F)[0][2]).item<bool>());
@@ -80,15 +84,15 @@ TEST(NarrowNorm, gives_what_libtorchs_batch_norm_gives_and_its_gradients) {
                          .requires_grad_();
     const Tensor weight = torch::rand({c}, generator_of(2, 0)).add_(.5).requires_grad_();
     const Tensor bias = torch::randn({c}, generator_of(3, 0)).requires_grad_();
-    const Tensor above = torch::randn(shape, generator_of(4, 0)) + .3;
+    const Tensor above = (torch::randn(shape, generator_of(4, 0)) + .3).to(torch::kBFloat16);
     std::vector<std::vector<Tensor>> results;
     for (const bool ours : {true, false}) {
       const Tensor mean = torch::full({c}, .5), var = torch::full({c}, 2.);
       const Tensor y = ours ? narrow_batch_norm(x, weight, bias, mean, var)
                             : torch::batch_norm(x.to(torch::kFloat32), weight, bias, mean, var,
                                                 true, .1, 1e-5, false);
-      EXPECT_EQ(y.scalar_type(), torch::kFloat32);
-      auto all = torch::autograd::grad({y}, {weight, bias, x}, {above});
+      EXPECT_EQ(y.scalar_type(), ours ? torch::kBFloat16 : torch::kFloat32);
+      auto all = torch::autograd::grad({y}, {weight, bias, x}, {above.to(y.scalar_type())});
       EXPECT_EQ(all.back().scalar_type(), torch::kBFloat16);
       all.insert(all.begin(), {y, mean, var});
       results.push_back(std::move(all));
@@ -98,6 +102,32 @@ TEST(NarrowNorm, gives_what_libtorchs_batch_norm_gives_and_its_gradients) {
       const Tensor a = results[0][i].to(torch::kFloat32), b = results[1][i].to(torch::kFloat32);
       EXPECT_TRUE(torch::allclose(a, b, narrow ? 1. / 128 : 1e-4, 1e-4))
           << i << ": " << (a - b).abs().max();
+    }
+  }
+}
+
+TEST(ReluUpsampleToOne, stays_near_the_convolution_after_upsampling) {
+  for (const std::vector<std::int64_t>& shape :
+       {std::vector<std::int64_t>{2, 5, 7, 4}, {1, 32, 16, 24}, {3, 1, 1, 1}}) {
+    const std::int64_t c = shape[1];
+    std::vector<std::vector<Tensor>> results;
+    for (const bool ours : {true, false}) {
+      const NarrowProducts on(ours);
+      Tensor x = signal(shape, 1, true).to(torch::kBFloat16);
+      x = (ours ? x : x.to(torch::kFloat32)).requires_grad_();
+      const Tensor weight = torch::randn({1, c, 3, 3}, generator_of(2, 0)).requires_grad_();
+      const Tensor bias = torch::full({1}, .3).requires_grad_();
+      const Tensor y = relu_upsample_to_one(x, weight, bias);
+      EXPECT_EQ(y.scalar_type(), torch::kFloat32);
+      const Tensor above = torch::randn(y.sizes(), generator_of(3, 0));
+      auto all = torch::autograd::grad({y}, {x, weight, bias}, {above});
+      all.push_back(y);
+      results.push_back(std::move(all));
+    }
+    for (std::size_t i = 0; i < results[0].size(); ++i) {
+      const Tensor a = results[0][i].to(torch::kFloat32), b = results[1][i];
+      const double scale = b.abs().max().item<double>();
+      EXPECT_LT((a - b).abs().max().item<double>(), .02 * scale + 1e-6) << i << ", " << shape;
     }
   }
 }
@@ -113,7 +143,8 @@ TEST(NormedConvolution, stays_near_a_convolution_and_a_norm) {
   p["norm.running_mean"].zero_();
   p["norm.running_var"].fill_(1);
   const Tensor ours = normed_convolution(p, "conv", "norm", x, 1, 1, true);
-  EXPECT_TRUE(torch::allclose(ours, theirs, 1e-4, 1e-4));
+  EXPECT_EQ(ours.scalar_type(), torch::kBFloat16);
+  EXPECT_TRUE(torch::allclose(ours.to(torch::kFloat32), theirs, 1. / 256, 1e-4));
   EXPECT_TRUE(torch::allclose(p["norm.running_mean"], mean, 1e-4, 1e-5));
   EXPECT_TRUE(torch::allclose(p["norm.running_var"], var, 1e-4, 1e-5));
   // Not in training, it is the two, digit for digit.
