@@ -62,8 +62,25 @@ Tensor convolution(const Parameters& p, const std::string& name, const Tensor& x
 }
 
 Tensor transposed(const Parameters& p, const std::string& name, const Tensor& x) {
-  // libtorch 1.13 refuses transposed convolutions of bfloat16.
-  return torch::conv_transpose2d(x, p[name + ".weight"], p[name + ".bias"], 2, 1);
+  const Tensor &weight = p[name + ".weight"], &bias = p[name + ".bias"];
+  if (!narrow_products) return torch::conv_transpose2d(x, weight, bias, 2, 1);
+  // libtorch 1.13 refuses transposed convolutions of bfloat16. Each of the four pixels that a pixel
+  // becomes is a 3x3 convolution of it, of which 2x2 taps are not 0: the even ones of each axis see
+  // taps 3 and 1 of the four, the odd ones 2 and 0.
+  constexpr std::int64_t kNone = 4;
+  const Tensor taps = torch::tensor({std::int64_t{3}, std::int64_t{1}, kNone, kNone,
+                                     std::int64_t{2}, std::int64_t{0}})
+                          .to(x.device());
+  const std::int64_t in = weight.size(0), out = weight.size(1);
+  const Tensor phases = torch::constant_pad_nd(weight, {0, 1, 0, 1})
+                            .index_select(2, taps)
+                            .index_select(3, taps)
+                            .view({in, out, 2, 3, 2, 3})
+                            .permute({1, 2, 4, 0, 3, 5})
+                            .reshape({4 * out, in, 3, 3});
+  const Tensor pixels =
+      torch::conv2d(as_factor(x), as_factor(phases), as_factor(bias.repeat_interleave(4)), 1, 1);
+  return wide(torch::pixel_shuffle(pixels, 2));
 }
 
 Tensor batch_norm(const Parameters& p, const std::string& name, const Tensor& x, bool training) {

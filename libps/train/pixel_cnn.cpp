@@ -1,113 +1,62 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "libps/train/pixel_cnn.h"
 
-#include <ATen/Parallel.h>
-
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <string>
 #include <vector>
 
+#include "libps/train/elu_taps.h"
 #include "libps/train/layers.h"
+#include "libps/train/narrow.h"
 
 namespace ps::train {
 namespace {
 
-constexpr int kTaps = 9;
 constexpr std::array<std::array<int, 3>, 2> kBlocks = {{{2, 2, 2}, {2, 3, 3}}};
 
-/// Rows of x by number; zeros where the number is negative.
-Tensor rows_of(const Tensor& x, const Tensor& index) {
-  if (!x.is_cpu()) {
-    const Tensor rows = x.index_select(0, index.clamp_min(0));
-    return rows.masked_fill_((index < 0).unsqueeze(1), 0);
-  }
-  const Tensor out = torch::empty({index.size(0), x.size(1)}, x.options());
-  const auto* const from = static_cast<const char*>(x.data_ptr());
-  auto* const to = static_cast<char*>(out.data_ptr());
-  const std::int64_t* const rows = index.data_ptr<std::int64_t>();
-  const std::int64_t bytes = x.size(1) * static_cast<std::int64_t>(x.element_size());
-  at::parallel_for(0, index.size(0), 2048, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) {
-      char* const row = to + i * bytes;
-      if (rows[i] < 0) {
-        std::memset(row, 0, static_cast<std::size_t>(bytes));
-      } else {
-        std::memcpy(row, from + rows[i] * bytes, static_cast<std::size_t>(bytes));
-      }
-    }
-  });
-  return out;
-}
-
-/// Of each kTaps rows by number their sum, in float; negative numbers count as zeros.
-template <class T>
-void sum_rows(const Tensor& x, const Tensor& index, const Tensor& sums) {
-  const std::int64_t channels = x.size(1);
-  const T* const from = x.data_ptr<T>();
-  const std::int64_t* const rows = index.data_ptr<std::int64_t>();
-  float* const to = sums.data_ptr<float>();
-  at::parallel_for(0, sums.size(0), 512, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) {
-      float* const sum = to + i * channels;
-      std::fill_n(sum, channels, 0.F);
-      for (int tap = 0; tap < kTaps; ++tap) {
-        const std::int64_t row = rows[i * kTaps + tap];
-        if (row < 0) continue;
-        const T* const summand = from + row * channels;
-        for (std::int64_t c = 0; c < channels; ++c) sum[c] += static_cast<float>(summand[c]);
-      }
-    }
-  });
-}
-
-Tensor summed_rows(const Tensor& x, const Tensor& index) {
-  const std::int64_t cells = index.size(0) / kTaps, channels = x.size(1);
-  if (!x.is_cpu()) {
-    return rows_of(x, index).view({cells, kTaps, channels}).sum(1, false, torch::kFloat32);
-  }
-  const Tensor sums = torch::empty({cells, channels}, x.options().dtype(torch::kFloat32));
-  if (x.scalar_type() == torch::kBFloat16) {
-    sum_rows<at::BFloat16>(x, index, sums);
-  } else {
-    sum_rows<float>(x, index, sums);
-  }
-  return sums;
-}
-
-/// What the visible taps of each cell read, side by side: [rows, c] -> [rows, 9 c], already as
-/// narrow as the product wants it, which halves the memory that it goes through. Its gradient is
-/// gathered too: each cell is read through a tap by one cell at most.
-class GatherTaps : public torch::autograd::Function<GatherTaps> {
- public:
-  static Tensor forward(torch::autograd::AutogradContext* context, const Tensor& x,
-                        const Tensor& from, const Tensor& to) {
-    context->save_for_backward({to});
-    return rows_of(as_factor(x).contiguous(), from).view({x.size(0), kTaps * x.size(1)});
-  }
-  static torch::autograd::variable_list backward(torch::autograd::AutogradContext* context,
-                                                 torch::autograd::variable_list gradients) {
-    const Tensor to = context->get_saved_variables()[0];
-    const Tensor gradient = gradients[0].contiguous();
-    return {summed_rows(gradient.view({-1, gradient.size(1) / kTaps}), to), Tensor(), Tensor()};
-  }
-};
-
 /// Rows [r, in] times a matrix [out, in], as a 1x1 convolution: it stays in oneDNN's threads, where
-/// a matrix product would wake the BLAS's own.
-Tensor product(const Tensor& x, const Tensor& weight, const Tensor& bias) {
-  const Tensor pixels = x.view({1, x.size(0), 1, x.size(1)}).permute({0, 3, 1, 2});
-  const Tensor out = conv2d(pixels, weight.view({weight.size(0), weight.size(1), 1, 1}), bias);
+/// a matrix product would wake the BLAS's own. Rows are laid out as wide pictures, as oneDNN takes
+/// pixels of a row together.
+Tensor rows_times(const Tensor& x, const Tensor& weight, const Tensor& bias) {
+  constexpr std::int64_t kWidth = 128;
+  const std::int64_t width = x.size(0) % kWidth == 0 ? kWidth : 1;
+  const Tensor pixels = x.view({1, x.size(0) / width, width, x.size(1)}).permute({0, 3, 1, 2});
+  const Tensor out = torch::conv2d(pixels, weight.view({weight.size(0), -1, 1, 1}), bias);
   return out.permute({0, 2, 3, 1}).reshape({x.size(0), weight.size(0)});
 }
 
-Tensor masked_convolution(const Parameters& p, const std::string& name, const Tensor& x,
-                          const TapIndex& taps) {
+/// rows_times() of narrow factors. Gradients are products of the same kinds, and a matrix product,
+/// which libtorch leaves to oneDNN where it is narrow; a 1x1 convolution's own gradients take two
+/// to three times as long there.
+class NarrowProduct : public torch::autograd::Function<NarrowProduct> {
+ public:
+  static Tensor forward(torch::autograd::AutogradContext* context, const Tensor& x,
+                        const Tensor& weight, const Tensor& bias) {
+    const Tensor narrow = weight.to(torch::kBFloat16);
+    context->save_for_backward({x, narrow});
+    return rows_times(x, narrow, bias.to(torch::kBFloat16)).to(torch::kFloat32);
+  }
+  static torch::autograd::variable_list backward(torch::autograd::AutogradContext* context,
+                                                 torch::autograd::variable_list gradients) {
+    const auto saved = context->get_saved_variables();
+    const Tensor &x = saved[0], &weight = saved[1];
+    const Tensor gradient = gradients[0].to(torch::kBFloat16).contiguous();
+    const Tensor by_x = rows_times(gradient, weight.t().contiguous(), {});
+    return {by_x, torch::mm(gradient.t(), x).to(torch::kFloat32), gradients[0].sum(0)};
+  }
+};
+
+Tensor product(const Tensor& x, const Tensor& weight, const Tensor& bias) {
+  if (!products_are_narrow() || !x.is_cpu()) return rows_times(x, weight, bias);
+  return NarrowProduct::apply(as_factor(x).contiguous(), weight, bias);
+}
+
+/// @param read  what its taps read of each cell
+Tensor masked_convolution(const Parameters& p, const std::string& name, const Tensor& read) {
   const Tensor& weight = p[name + ".weight"];
   const Tensor by_tap = weight.permute({0, 2, 3, 1}).reshape({weight.size(0), -1});
-  return product(GatherTaps::apply(x, taps.from, taps.to), by_tap, p[name + ".bias"]);
+  return product(read, by_tap, p[name + ".bias"]);
 }
 
 Tensor normed_rows(const Parameters& p, const std::string& name, const Tensor& x) {
@@ -122,8 +71,6 @@ Tensor positional_norm(const Tensor& x) {
   return torch::layer_norm(x, {x.size(1)}, {}, {}, kEps * ratio) * std::sqrt(ratio);
 }
 
-Tensor concat_elu(const Tensor& x) { return torch::elu(torch::cat({x, -x}, 1)); }
-
 std::string block_name(int half, int stage, int block) {
   return std::string(half == 1 ? "down" : "up") + "_layers." + std::to_string(stage) +
          ".u_stream." + std::to_string(block) + ".";
@@ -135,9 +82,11 @@ std::string dilated_name(int half, int stage) {
 
 Tensor gated_block(const Parameters& p, const std::string& name, const Tensor& x,
                    const Tensor* skip, const TapIndex& taps) {
-  Tensor h = positional_norm(masked_convolution(p, name + "conv_input", concat_elu(x), taps));
+  Tensor h =
+      positional_norm(masked_convolution(p, name + "conv_input", elu_taps(x, taps.from, taps.to)));
   if (skip != nullptr) h = h + normed_rows(p, name + "nin_skip.lin_a", concat_elu(*skip));
-  const auto gates = masked_convolution(p, name + "conv_out", concat_elu(h), taps).chunk(2, 1);
+  const auto gates =
+      masked_convolution(p, name + "conv_out", elu_taps(h, taps.from, taps.to)).chunk(2, 1);
   return x + positional_norm(gates[0].contiguous()) * torch::sigmoid(gates[1]);
 }
 
@@ -231,7 +180,8 @@ Tensor PixelCnn::forward(const Tensor& codes, const Tensor& order) const {
         if (half == 0) pushed.push_back(x);
       }
       if (s == 2) continue;
-      x = positional_norm(masked_convolution(p, dilated_name(half, s), x, dilated));
+      x = positional_norm(
+          masked_convolution(p, dilated_name(half, s), gathered_taps(x, dilated.from, dilated.to)));
       if (half == 0) pushed.push_back(x);
     }
     if (half == 0) pushed.pop_back();  // the last one is where the down half begins

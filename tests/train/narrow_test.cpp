@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "libps/train/elu_taps.h"
 #include "libps/train/layers.h"
 #include "libps/train/leaky.h"
 #include "libps/train/narrow_norm.h"
@@ -130,6 +131,64 @@ TEST(ReluUpsampleToOne, stays_near_the_convolution_after_upsampling) {
       EXPECT_LT((a - b).abs().max().item<double>(), .02 * scale + 1e-6) << i << ", " << shape;
     }
   }
+}
+
+TEST(Transposed, stays_near_libtorchs_where_products_are_narrow) {
+  Parameters p("", 1);
+  add_transposed(p, "up", 5, 3);
+  p["up.bias"].detach().copy_(torch::tensor({.5, -1., 2.}));
+  std::vector<std::vector<Tensor>> results;
+  for (const bool narrow : {true, false}) {
+    const NarrowProducts on(narrow);
+    const Tensor x = signal({2, 5, 4, 7}, 1, true).requires_grad_();
+    const Tensor y = transposed(p, "up", x);
+    const Tensor above = torch::randn({2, 3, 8, 14}, generator_of(4, 0));
+    auto all = torch::autograd::grad({y}, {x, p["up.weight"], p["up.bias"]}, {above});
+    all.push_back(y);
+    results.push_back(std::move(all));
+  }
+  for (std::size_t i = 0; i < results[0].size(); ++i) {
+    const double scale = results[1][i].abs().max().item<double>();
+    const double off = (results[0][i] - results[1][i]).abs().max().item<double>();
+    EXPECT_LT(off, .02 * scale) << i;
+    EXPECT_GT(off, 0) << i;  // or nothing was narrow
+  }
+}
+
+TEST(EluTaps, stay_near_a_concatenation_and_a_gathering) {
+  const std::int64_t cells = 40, c = 6;
+  // Each cell reads, through each tap, a cell or none, and is read by one or none.
+  const Tensor from = torch::full({cells, kTaps}, -1, torch::kInt64), to = from.clone();
+  for (std::int64_t i = 0; i < cells; ++i) {
+    for (std::int64_t tap = 0; tap < kTaps; ++tap) {
+      const std::int64_t read = (7 * i + 3 * tap) % cells;
+      if ((i + tap) % 4 == 0) continue;
+      from[i][tap] = read;
+      to[read][tap] = i * kTaps + tap;
+    }
+  }
+  for (const bool gathers : {true, false}) {
+    std::vector<std::vector<Tensor>> results;
+    for (const bool narrow : {true, false}) {
+      const NarrowProducts on(narrow);
+      const Tensor x = (3 * signal({cells, c}, 1, false)).requires_grad_();
+      const Tensor y = gathers ? elu_taps(x, from.view({-1}), to.view({-1})) : concat_elu(x);
+      EXPECT_EQ(y.scalar_type(), narrow ? torch::kBFloat16 : torch::kFloat32);
+      const Tensor above = torch::randn(y.sizes(), generator_of(4, 0)).to(torch::kBFloat16);
+      const Tensor by_x = torch::autograd::grad({y}, {x}, {above.to(y.scalar_type())})[0];
+      results.push_back({y.to(torch::kFloat32), by_x});
+    }
+    EXPECT_TRUE(torch::allclose(results[0][0], results[1][0], 1. / 256, 1e-6));
+    // At 0 libtorch's ELU has the slope of what is below, 1, as ours.
+    EXPECT_TRUE(torch::allclose(results[0][1], results[1][1], 1e-4, 1e-4))
+        << (results[0][1] - results[1][1]).abs().max();
+  }
+  const NarrowProducts on(true);
+  const Tensor odd = torch::tensor({std::nanf(""), 200.F, -200.F}).view({1, 3});
+  const Tensor y = concat_elu(odd).to(torch::kFloat32);
+  EXPECT_TRUE(torch::isnan(y[0][0]).item<bool>());
+  EXPECT_EQ(y[0][2].item<float>(), -1);
+  EXPECT_EQ(y[0][4].item<float>(), -1);
 }
 
 TEST(NormedConvolution, stays_near_a_convolution_and_a_norm) {

@@ -5,11 +5,16 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <atomic>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "libps/core/clock.h"
 #include "libps/core/error.h"
@@ -19,31 +24,52 @@ namespace {
 
 using ps::Instant;
 
-std::atomic<std::int64_t> product_nanoseconds{0};
+/// Seconds in libtorch's outermost operators, by name, and in its products wherever they are.
+std::map<std::string, double> operator_seconds;
+double product_seconds = 0;
+std::mutex guard;
 
 struct Since : at::ObserverContext {
   Instant start = ps::now();
+  bool operator_is_outermost = false, product_is_outermost = false;
 };
 
-/// Adds up the time of libtorch's outermost products, forwards and backwards.
-void watch_products() {
+bool is_product(const char* name) {
   static const std::set<std::string> products = {"aten::convolution", "aten::convolution_backward",
-                                                 "aten::bmm", "aten::mm", "aten::addmm"};
-  thread_local static int depth = 0;
+                                                 "aten::mm", "aten::bmm", "aten::addmm"};
+  return products.count(name) > 0;
+}
+
+void watch_operators() {
+  thread_local static int operators = 0, products = 0;
   at::addGlobalCallback(
       at::RecordFunctionCallback(
           [](const at::RecordFunction& f) -> std::unique_ptr<at::ObserverContext> {
-            if (products.count(f.name()) == 0 || depth++ > 0) return nullptr;
-            return std::make_unique<Since>();
+            auto since = std::make_unique<Since>();
+            since->operator_is_outermost = operators++ == 0;
+            since->product_is_outermost = is_product(f.name()) && products++ == 0;
+            return since;
           },
           [](const at::RecordFunction& f, at::ObserverContext* context) {
-            if (products.count(f.name()) == 0) return;
-            --depth;
-            if (context == nullptr) return;
-            const double seconds = ps::seconds_since(static_cast<Since*>(context)->start);
-            product_nanoseconds += static_cast<std::int64_t>(seconds * 1e9);
+            const auto* since = static_cast<Since*>(context);
+            const double seconds = ps::seconds_since(since->start);
+            --operators;
+            if (is_product(f.name())) --products;
+            const std::lock_guard<std::mutex> lock(guard);
+            if (since->operator_is_outermost) operator_seconds[f.name()] += seconds;
+            if (since->product_is_outermost) product_seconds += seconds;
           })
-          .scopes({at::RecordScope::FUNCTION}));
+          .scopes({at::RecordScope::FUNCTION, at::RecordScope::BACKWARD_FUNCTION}));
+}
+
+void print_costliest(int count, int steps) {
+  std::vector<std::pair<double, std::string>> all;
+  for (const auto& [name, seconds] : operator_seconds) all.push_back({seconds, name});
+  std::sort(all.rbegin(), all.rend());
+  all.resize(std::min(all.size(), static_cast<std::size_t>(count)));
+  for (const auto& [seconds, name] : all) {
+    std::printf("    %8.2f ms a step  %s\n", 1e3 * seconds / steps, name.c_str());
+  }
 }
 
 struct Speed {
@@ -58,15 +84,15 @@ Speed speed_of(ps::train::TrainOptions options, int steps, int warm_up) {
   const auto progress = [&](const ps::train::TrainEvent& event) {
     if (event.evaluated) return true;
     if (event.step == warm_up) {
-      product_nanoseconds = 0;
+      operator_seconds.clear();
+      product_seconds = 0;
       start = ps::now();
     }
     seconds = ps::seconds_since(start);
     return true;
   };
   ps::train::train(options, progress);
-  const double products = static_cast<double>(product_nanoseconds) * 1e-9;
-  return {steps * options.batch / seconds, products / seconds};
+  return {steps * options.batch / seconds, product_seconds / seconds};
 }
 
 }  // namespace
@@ -77,7 +103,7 @@ int main(int argc, char** argv) {
   std::string codes = "data/weights/vqvae.safetensors",
               stages = "vqvae depth classifier refine pixelcnn";
   std::string features;
-  int steps = 40, warm_up = 10;
+  int steps = 40, warm_up = 10, costliest = 0;
   app.add_option("--data", options.train, "Folder of examples, as `train data` writes to train/")
       ->required();
   app.add_option("--stages", stages, "Names with spaces between")->capture_default_str();
@@ -86,9 +112,10 @@ int main(int argc, char** argv) {
   app.add_option("--arithmetic", options.arithmetic)->capture_default_str();
   app.add_option("--threads", options.threads, "0 = all");
   app.add_option("--steps", steps, "Steps that are timed; a multiple of 10")->capture_default_str();
+  app.add_option("--operators", costliest, "How many of the costliest operators to tell");
   CLI11_PARSE(app, argc, argv);
   steps = std::max(steps / 10, 1) * 10;
-  watch_products();
+  watch_operators();
   std::printf("%-12s %6s %16s %20s\n", "stage", "batch", "images a second", "share of products");
   for (const std::string& stage : CLI::detail::split(stages, ' ')) {
     options.stage = stage;
@@ -104,6 +131,7 @@ int main(int argc, char** argv) {
       const Speed speed = speed_of(options, steps, warm_up);
       std::printf("%-12s %6d %16.1f %18.0f %%\n", stage.c_str(), options.batch,
                   speed.images_per_second, 100 * speed.products);
+      print_costliest(costliest, steps);
     } catch (const ps::Error& error) {
       std::fprintf(stderr, "%s\n", error.what());
       return 1;
