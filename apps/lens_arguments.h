@@ -18,6 +18,9 @@ struct LensArguments {
   void add_to(CLI::App& verb);
 };
 
+/// @brief ps::read_photo() and check_photo(); warns of what the photo has that is not heeded.
+Photo read_photo(const std::string& file, const Context& context, WantedPixels wanted = {});
+
 struct PhotoLens {
   Intrinsics intrinsics;
   std::string from;  ///< "--intrinsics", "--fov", "EXIF" or "default"

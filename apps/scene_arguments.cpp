@@ -186,6 +186,11 @@ SceneOptions SceneArguments::scene(const Context& context) const {
     throw CLI::ValidationError("--refine-best",
                                "does not go with --samples auto; expected a number of samples");
   }
+  if (refine_best > 0 && (select == "consensus" || select == "likelihood")) {
+    throw CLI::ValidationError("--refine-best", "does not go with --select " + select +
+                                                    ", which looks at no pictures; expected "
+                                                    "discriminator, classifier or both");
+  }
   o.temperature = temperature;
   o.guidance = guidance;
   o.refine_best = refine_best;

@@ -89,8 +89,7 @@ Depth depth_at(const Photo& photo, const std::string& file, double depth_scale,
 /// @param longest  pixels that are wanted along its long side
 View read_one(const SceneInputArguments& a, const std::string& file, const std::string& depth,
               const DepthModel* model, int longest, const Context& context, Json& report) {
-  const Photo photo = read_photo(file, {longest, kShortest});
-  check_photo(photo.color, file);
+  const Photo photo = read_photo(file, context, {longest, kShortest});
   const PhotoLens lens = choose_lens(a.lens, photo, file, context);
   View view;
   view.world_from_cam = kPhotoPose;

@@ -71,8 +71,7 @@ void run_depth(const DepthArguments& a, const Context& context) {
   const Stopwatch total;
   const DepthModel model = load_depth_model(a.weights, context);
   check_outputs(a, model);
-  const Photo photo = read_photo(a.photo);
-  check_photo(photo.color, a.photo);
+  const Photo photo = read_photo(a.photo, context);
   const PhotoLens lens = choose_lens(a.lens, photo, a.photo, context);
   const Stopwatch watch;
   Depth depth = photo_depth(model.net, photo.color, lens.intrinsics, model.scale);

@@ -235,6 +235,18 @@ std::string_view check_image_bytes(std::string_view bytes, const std::string& na
   return {};
 }
 
+bool has_alpha(std::string_view bytes) {
+  if (starts_with(bytes, kPng)) {  // the kind of colour, or a chunk of transparent ones
+    const bool channel = bytes.size() > 25 && (bytes[25] & 4) != 0;
+    const std::size_t pixels = bytes.find("IDAT");
+    return channel || bytes.substr(0, pixels).find("tRNS") != std::string_view::npos;
+  }
+  if (bytes.size() < 30 || !starts_with(bytes, "RIFF") || bytes.substr(8, 4) != "WEBP")
+    return false;
+  if (bytes.substr(12, 4) == "VP8X") return (bytes[20] & 0x10) != 0;
+  return bytes.substr(12, 4) == "VP8L" && (bytes[24] & 0x10) != 0;
+}
+
 cv::Mat decode_image(std::string_view bytes, int flags, const std::string& name) {
   check_image_bytes(bytes, name);
   if (!is_known(bytes)) {

@@ -18,6 +18,9 @@ namespace ps {
 /// has more than 2^28 pixels.
 std::string_view check_image_bytes(std::string_view bytes, const std::string& name);
 
+/// @return whether a PNG or WebP says that it has an alpha channel; of other kinds false
+bool has_alpha(std::string_view bytes);
+
 /// @brief cv::imdecode after check_image_bytes(); throws ps::Error where OpenCV fails.
 /// @param flags  cv::ImreadModes
 cv::Mat decode_image(std::string_view bytes, int flags, const std::string& name);

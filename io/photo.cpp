@@ -61,19 +61,34 @@ Image to_image(const cv::Mat_<cv::Vec<T, 3>>& bgr, float white) {
   return out;
 }
 
+/// The share of pixels that are not wholly opaque; `image` loses its fourth channel, if it has one.
+double take_alpha(cv::Mat& image) {
+  if (image.channels() != 4) return 0;
+  cv::Mat alpha;
+  cv::extractChannel(image, alpha, 3);
+  cv::cvtColor(image, image, cv::COLOR_BGRA2BGR);
+  const double opaque = alpha.depth() == CV_16U ? 65535 : 255;
+  return static_cast<double>(cv::countNonZero(alpha < opaque)) / static_cast<double>(alpha.total());
+}
+
 }  // namespace
 
 Photo parse_photo(std::string_view bytes, const std::string& name, WantedPixels wanted) {
   return guarded(name, [&] {
     if (bytes.substr(0, 4) == "\x76\x2f\x31\x01") throw Error(name, "is an EXR", "a photo");
     const Exif exif = parse_exif(check_image_bytes(bytes, name));
-    cv::Mat stored = decode_image(
-        bytes, cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION, name);
+    constexpr int kColors = cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION;
+    Photo photo;
+    cv::Mat stored;
+    if (has_alpha(bytes)) {
+      stored = decode_image(bytes, cv::IMREAD_UNCHANGED, name);
+      photo.transparent = take_alpha(stored);
+    }
+    if (stored.channels() != 3) stored = decode_image(bytes, kColors, name);
     const cv::Size size = stored.size();
     stored = averaged(stored, wanted);
     const cv::Mat bgr = upright(stored, exif.orientation);
     stored.release();
-    Photo photo;
     photo.size = exif.orientation >= 5 ? cv::Size(size.height, size.width) : size;
     if (bgr.type() == CV_8UC3) {
       photo.color = to_image<unsigned char>(bgr, 255);

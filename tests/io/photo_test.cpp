@@ -193,6 +193,29 @@ TEST(Photo, focal_length_from_the_focal_plane_follows_a_resized_photo) {
   EXPECT_NEAR(*photo.focal_px, 5 * 200 / 2.0, 1e-9);
 }
 
+TEST(Photo, transparent_pixels_are_told_and_keep_their_colours) {
+  const cv::Mat3b plain = corner();
+  cv::Mat alpha(plain.size(), CV_8UC1, cv::Scalar(255)), four;
+  const auto with = [&](const char* extension, const std::vector<int>& how) {
+    cv::merge(std::vector<cv::Mat>{plain, alpha}, four);
+    return parse_photo(encoded(extension, four, how), extension);
+  };
+  for (const auto& [extension, how] :
+       {std::make_pair(".png", std::vector<int>{}), {".webp", {cv::IMWRITE_WEBP_QUALITY, 101}}}) {
+    alpha.setTo(255);
+    const Photo opaque = with(extension, how);
+    EXPECT_EQ(opaque.transparent, 0);
+    alpha.row(0).setTo(128);
+    const Photo photo = with(extension, how);
+    EXPECT_DOUBLE_EQ(photo.transparent, 1. / plain.rows) << extension;
+    EXPECT_EQ(cv::norm(photo.color, opaque.color, cv::NORM_INF), 0) << extension;
+    EXPECT_EQ(cv::norm(photo.color, parse_photo(encoded(".png", plain), "a").color, cv::NORM_INF),
+              0)
+        << extension;
+  }
+  EXPECT_EQ(parse_photo(encoded(".png", plain), "a").transparent, 0);
+}
+
 TEST(Photo, focal_lengths_that_cannot_be_are_left_out) {
   const std::uint32_t values = 38 + 2 + 2 * 12 + 4;
   const std::string zero =
