@@ -6,7 +6,6 @@
 
 #include "libps/models/depth_net.h"
 #include "libps/train/layers.h"
-#include "libps/train/leaky.h"
 #include "libps/train/narrow_norm.h"
 #include "libps/train/upsample.h"
 #include "libps/train/upsampled_sum.h"
@@ -48,8 +47,9 @@ Tensor DepthNet::forward(const Tensor& image, bool training) const {
   std::vector<Tensor> skips;
   Tensor x = image;
   for (int i = 0; i < kLevels; ++i) {
-    if (i > 0) x = leaky_factor(x, 0.2F);
-    x = normed_convolution(parameters, encoder_name(i), encoder_norm(i), x, 2, 1, training);
+    // The decoder reads relu(x) of a skip, which is relu(leaky(x)).
+    x = normed_convolution(parameters, encoder_name(i), encoder_norm(i), x, 2, 1,
+                           i + 1 < kLevels ? .2F : 1.F, training);
     skips.push_back(x);
   }
   for (int i = 0; i < kLevels; ++i) {
@@ -57,7 +57,7 @@ Tensor DepthNet::forward(const Tensor& image, bool training) const {
     if (norm.empty()) {
       return relu_upsample_to_one(x, parameters[name + ".weight"], parameters[name + ".bias"]);
     }
-    x = normed_convolution(parameters, name, norm, relu_upsample_2x(x), 1, 1, training);
+    x = normed_convolution(parameters, name, norm, relu_upsample_2x(x), 1, 1, 1, training);
     x = torch::cat({x, skips[static_cast<std::size_t>(kLevels - 2 - i)]}, 1);
   }
   return x;

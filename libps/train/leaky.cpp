@@ -3,12 +3,12 @@
 
 #include <ATen/Parallel.h>
 
-#include "libps/train/layers.h"
 #include "libps/train/narrow.h"
 
 namespace ps::train {
 namespace {
 
+using torch::Tensor;
 using torch::autograd::AutogradContext;
 using torch::autograd::variable_list;
 
@@ -61,9 +61,9 @@ class Leaky : public torch::autograd::Function<Leaky> {
 
 }  // namespace
 
-Tensor leaky_factor(const Tensor& x, float slope) {
+Tensor leaky(const Tensor& x, float slope) {
   if (!x.is_cpu() || x.scalar_type() != torch::kBFloat16) {
-    return as_factor(torch::leaky_relu(x, slope));
+    return torch::leaky_relu(x, slope);
   }
   return Leaky::apply(x, static_cast<double>(slope));
 }

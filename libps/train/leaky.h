@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Internal to this room: what an encoder's convolution reads.
+// Internal to this room: leaky ReLU.
 #pragma once
 
 #include <torch/torch.h>
 
 namespace ps::train {
 
-/// @brief as_factor(torch::leaky_relu(x, slope)), digit for digit, in one pass forward and one back
-/// where x is of bfloat16 on the CPU. It has no second derivatives.
+/// @brief torch::leaky_relu(x, slope), digit for digit, in one pass forward and one back where x is
+/// of bfloat16 on the CPU. It has no second derivatives then.
 /// @param x  [n, c, h, w], of any layout
 /// Throws c10::Error as torch does.
-torch::Tensor leaky_factor(const torch::Tensor& x, float slope);
+torch::Tensor leaky(const torch::Tensor& x, float slope);
 
 }  // namespace ps::train

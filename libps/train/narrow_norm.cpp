@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libps/train/layers.h"
+#include "libps/train/leaky.h"
 #include "libps/train/narrow.h"
 
 namespace ps::train {
@@ -23,6 +24,13 @@ constexpr std::int64_t kChunk = 1024;  ///< pixels whose sums are one thread's
 Tensor channels_last(const Tensor& x) { return x.contiguous(torch::MemoryFormat::ChannelsLast); }
 const Narrow* bits_of(const Tensor& x) { return static_cast<const Narrow*>(x.data_ptr()); }
 
+/// Of each channel: x -> by * x + add, times the slope where that is below 0.
+struct Scale {
+  const float* by;
+  const float* add;
+  float slope;
+};
+
 /// Adds up x less a pixel's, and its squares, over pixels of c channels.
 PS_ANY_WIDTH void add_squares(const Narrow* x, const Narrow* pivot, std::int64_t pixels,
                               std::int64_t c, float* sum, float* squares) {
@@ -35,31 +43,42 @@ PS_ANY_WIDTH void add_squares(const Narrow* x, const Narrow* pivot, std::int64_t
   }
 }
 
+/// What scale() makes of a value, before it is narrowed and what is below 0 is multiplied.
+inline float scaled(Narrow x, float by, float add) { return widened(x) * by + add; }
+
 /// Adds up gradients, and gradients times x less its mean.
-PS_ANY_WIDTH void add_products(const Narrow* x, const Narrow* gradient, const float* mean,
-                               std::int64_t pixels, std::int64_t c, float* sum, float* products) {
+PS_ANY_WIDTH void add_products(const Narrow* x, const Narrow* gradient, const Scale& s,
+                               const float* mean, std::int64_t pixels, std::int64_t c, float* sum,
+                               float* products) {
   for (std::int64_t p = 0; p < pixels; ++p, x += c, gradient += c) {
     for (std::int64_t i = 0; i < c; ++i) {
-      const float g = widened(gradient[i]);
+      const float above = widened(gradient[i]);
+      const float g = chosen(scaled(x[i], s.by[i], s.add[i]) > 0, above, above * s.slope);
       sum[i] += g;
       products[i] += g * (widened(x[i]) - mean[i]);
     }
   }
 }
 
-PS_ANY_WIDTH void scale(const Narrow* x, const float* by, const float* add, Narrow* to,
-                        std::int64_t pixels, std::int64_t c) {
+PS_ANY_WIDTH void scale(const Narrow* x, const Scale& s, Narrow* to, std::int64_t pixels,
+                        std::int64_t c) {
   for (std::int64_t p = 0; p < pixels; ++p, x += c, to += c) {
-    for (std::int64_t i = 0; i < c; ++i) to[i] = narrowed(widened(x[i]) * by[i] + add[i]);
+    for (std::int64_t i = 0; i < c; ++i) {
+      const float value = scaled(x[i], s.by[i], s.add[i]);
+      to[i] = narrowed(chosen(value > 0, value, value * s.slope));
+    }
   }
 }
 
-PS_ANY_WIDTH void scale_back(const Narrow* x, const Narrow* gradient, const float* by,
+/// @param by_x, add  what the gradients' sums make of x and of 1
+PS_ANY_WIDTH void scale_back(const Narrow* x, const Narrow* gradient, const Scale& s,
                              const float* by_x, const float* add, Narrow* to, std::int64_t pixels,
                              std::int64_t c) {
   for (std::int64_t p = 0; p < pixels; ++p, x += c, gradient += c, to += c) {
     for (std::int64_t i = 0; i < c; ++i) {
-      to[i] = narrowed(widened(gradient[i]) * by[i] + widened(x[i]) * by_x[i] + add[i]);
+      const float above = widened(gradient[i]);
+      const float g = chosen(scaled(x[i], s.by[i], s.add[i]) > 0, above, above * s.slope);
+      to[i] = narrowed(g * s.by[i] + widened(x[i]) * by_x[i] + add[i]);
     }
   }
 }
@@ -97,7 +116,8 @@ void move(const Tensor& running, const Tensor& to) { running.lerp_(to, kMomentum
 class NarrowNorm : public torch::autograd::Function<NarrowNorm> {
  public:
   static Tensor forward(AutogradContext* context, const Tensor& image, const Tensor& weight,
-                        const Tensor& bias, const Tensor& running_mean, const Tensor& running_var) {
+                        const Tensor& bias, const Tensor& running_mean, const Tensor& running_var,
+                        double slope) {
     const Tensor x = channels_last(image);
     const std::int64_t c = x.size(1), pixels = x.numel() / c;
     const Narrow* const from = bits_of(x);
@@ -115,25 +135,28 @@ class NarrowNorm : public torch::autograd::Function<NarrowNorm> {
     const Tensor root = (var + kEpsilon).rsqrt();
     const Tensor by = weight.detach() * root.to(torch::kFloat32);
     const Tensor add = bias.detach() - mean.to(torch::kFloat32) * by;
-    context->save_for_backward({x, by, mean.to(torch::kFloat32), root.to(torch::kFloat32)});
+    context->save_for_backward({x, by, add, mean.to(torch::kFloat32), root.to(torch::kFloat32)});
+    context->saved_data["slope"] = slope;
+    const Scale scales{by.data_ptr<float>(), add.data_ptr<float>(), static_cast<float>(slope)};
     const Tensor out = torch::empty_like(x);
     auto* const to = static_cast<Narrow*>(out.data_ptr());
-    over_pixels(pixels, [&, by = by.data_ptr<float>(), add = add.data_ptr<float>()](
-                            std::int64_t begin, std::int64_t end) {
-      scale(from + begin * c, by, add, to + begin * c, end - begin, c);
+    over_pixels(pixels, [&](std::int64_t begin, std::int64_t end) {
+      scale(from + begin * c, scales, to + begin * c, end - begin, c);
     });
     return out;
   }
 
   static variable_list backward(AutogradContext* context, variable_list gradients) {
     const auto saved = context->get_saved_variables();
-    const Tensor &x = saved[0], &by = saved[1], &mean = saved[2], &root = saved[3];
+    const Tensor &x = saved[0], &by = saved[1], &mean = saved[3], &root = saved[4];
+    const Scale scales{by.data_ptr<float>(), saved[2].data_ptr<float>(),
+                       static_cast<float>(context->saved_data["slope"].toDouble())};
     const Tensor gradient = channels_last(gradients[0]);
     const std::int64_t c = x.size(1), pixels = x.numel() / c;
     const Narrow* const from = bits_of(x);
     const Narrow* const above = bits_of(gradient);
     const auto sums = two_sums(pixels, c, [&](std::int64_t p, std::int64_t n, float* a, float* b) {
-      add_products(from + p * c, above + p * c, mean.data_ptr<float>(), n, c, a, b);
+      add_products(from + p * c, above + p * c, scales, mean.data_ptr<float>(), n, c, a, b);
     });
     const auto both = torch::tensor(sums, torch::kFloat64).view({2, c}).to(torch::kFloat32);
     const Tensor by_weight = both[1] * root, by_bias = both[0];
@@ -141,33 +164,34 @@ class NarrowNorm : public torch::autograd::Function<NarrowNorm> {
     const Tensor add = -by * by_bias / pixels - by_x * mean;
     const Tensor out = torch::empty_like(x);
     auto* const to = static_cast<Narrow*>(out.data_ptr());
-    over_pixels(pixels, [&, by = by.data_ptr<float>(), by_x = by_x.data_ptr<float>(),
-                         add = add.data_ptr<float>()](std::int64_t begin, std::int64_t end) {
-      scale_back(from + begin * c, above + begin * c, by, by_x, add, to + begin * c, end - begin,
-                 c);
+    over_pixels(pixels, [&, by_x = by_x.data_ptr<float>(), add = add.data_ptr<float>()](
+                            std::int64_t begin, std::int64_t end) {
+      scale_back(from + begin * c, above + begin * c, scales, by_x, add, to + begin * c,
+                 end - begin, c);
     });
-    return {out, by_weight, by_bias, Tensor(), Tensor()};
+    return {out, by_weight, by_bias, Tensor(), Tensor(), Tensor()};
   }
 };
 
 }  // namespace
 
 Tensor narrow_batch_norm(const Tensor& x, const Tensor& weight, const Tensor& bias,
-                         const Tensor& running_mean, const Tensor& running_var) {
-  return NarrowNorm::apply(x, weight, bias, running_mean, running_var);
+                         const Tensor& running_mean, const Tensor& running_var, float slope) {
+  return NarrowNorm::apply(x, weight, bias, running_mean, running_var, static_cast<double>(slope));
 }
 
 Tensor normed_convolution(const Parameters& p, const std::string& name, const std::string& norm,
-                          const Tensor& x, int stride, int padding, bool training) {
+                          const Tensor& x, int stride, int padding, float slope, bool training) {
+  const auto sloping = [&](const Tensor& y) { return slope == 1 ? y : leaky(y, slope); };
   if (!training || !products_are_narrow() || !x.is_cpu()) {
     const Tensor wide = convolution(p, name, x, stride, padding);
-    return norm.empty() ? wide : batch_norm(p, norm, wide, training);
+    return sloping(norm.empty() ? wide : batch_norm(p, norm, wide, training));
   }
   const Tensor product = torch::conv2d(as_factor(x), as_factor(p[name + ".weight"]),
                                        as_factor(p[name + ".bias"]), stride, padding);
-  if (norm.empty()) return product;
+  if (norm.empty()) return sloping(product);
   return narrow_batch_norm(product, p[norm + ".weight"], p[norm + ".bias"],
-                           p[norm + ".running_mean"], p[norm + ".running_var"]);
+                           p[norm + ".running_mean"], p[norm + ".running_var"], slope);
 }
 
 }  // namespace ps::train

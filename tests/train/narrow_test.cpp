@@ -53,29 +53,28 @@ TEST(ReluUpsample, gives_libtorchs_digits_and_their_gradients) {
       [](const Tensor& x) { return as_factor(upsample_2x(torch::relu(x.to(torch::kFloat32)))); });
 }
 
-TEST(LeakyFactor, gives_libtorchs_digits_and_their_gradients) {
+TEST(Leaky, gives_libtorchs_digits_and_their_gradients) {
   expect_same_digits(
-      [](const Tensor& x) { return leaky_factor(x, .2F); },
+      [](const Tensor& x) { return leaky(x, .2F); },
       [](const Tensor& x) { return as_factor(torch::leaky_relu(x.to(torch::kFloat32), .2)); });
 }
 
 TEST(FusedLayers, leave_wide_products_as_they_are) {
   const Tensor x = signal({2, 3, 4, 4}, 1, true);
   EXPECT_TRUE(torch::equal(relu_upsample_2x(x), upsample_2x(torch::relu(x))));
-  EXPECT_TRUE(torch::equal(leaky_factor(x, .2F), torch::leaky_relu(x, .2)));
+  EXPECT_TRUE(torch::equal(leaky(x, .2F), torch::leaky_relu(x, .2)));
 }
 
-TEST(LeakyFactor, hands_on_what_is_not_finite) {
+TEST(Leaky, hands_on_what_is_not_finite) {
   const NarrowProducts on(true);
   const float far = std::numeric_limits<float>::infinity();
   const Tensor x =
       torch::tensor({far, -far, std::nanf("")}).view({1, 3, 1, 1}).to(torch::kBFloat16);
-  EXPECT_TRUE(
-      torch::equal(torch::isfinite(leaky_factor(x, .2F)), torch::zeros({1, 3, 1, 1}).gt(1)));
-  EXPECT_TRUE(torch::isnan(leaky_factor(x, .2F)[0][2]).item<bool>());
+  EXPECT_TRUE(torch::equal(torch::isfinite(leaky(x, .2F)), torch::zeros({1, 3, 1, 1}).gt(1)));
+  EXPECT_TRUE(torch::isnan(leaky(x, .2F)[0][2]).item<bool>());
 }
 
-TEST(NarrowNorm, gives_what_libtorchs_batch_norm_gives_and_its_gradients) {
+void expect_libtorchs_norm(float slope) {
   for (const std::vector<std::int64_t>& shape :
        {std::vector<std::int64_t>{2, 3, 5, 3}, {1, 16, 1, 2}, {3, 33, 40, 31}}) {
     const std::int64_t c = shape[1];
@@ -89,9 +88,11 @@ TEST(NarrowNorm, gives_what_libtorchs_batch_norm_gives_and_its_gradients) {
     std::vector<std::vector<Tensor>> results;
     for (const bool ours : {true, false}) {
       const Tensor mean = torch::full({c}, .5), var = torch::full({c}, 2.);
-      const Tensor y = ours ? narrow_batch_norm(x, weight, bias, mean, var)
-                            : torch::batch_norm(x.to(torch::kFloat32), weight, bias, mean, var,
-                                                true, .1, 1e-5, false);
+      const Tensor y =
+          ours ? narrow_batch_norm(x, weight, bias, mean, var, slope)
+               : torch::leaky_relu(torch::batch_norm(x.to(torch::kFloat32), weight, bias, mean, var,
+                                                     true, .1, 1e-5, false),
+                                   slope);
       EXPECT_EQ(y.scalar_type(), ours ? torch::kBFloat16 : torch::kFloat32);
       auto all = torch::autograd::grad({y}, {weight, bias, x}, {above.to(y.scalar_type())});
       EXPECT_EQ(all.back().scalar_type(), torch::kBFloat16);
@@ -106,6 +107,12 @@ TEST(NarrowNorm, gives_what_libtorchs_batch_norm_gives_and_its_gradients) {
     }
   }
 }
+
+TEST(NarrowNorm, gives_what_libtorchs_batch_norm_gives_and_its_gradients) {
+  expect_libtorchs_norm(1);
+}
+
+TEST(NarrowNorm, goes_on_to_a_leaky_relu) { expect_libtorchs_norm(.2F); }
 
 TEST(ReluUpsampleToOne, stays_near_the_convolution_after_upsampling) {
   for (const std::vector<std::int64_t>& shape :
@@ -201,13 +208,13 @@ TEST(NormedConvolution, stays_near_a_convolution_and_a_norm) {
   const Tensor mean = p["norm.running_mean"].clone(), var = p["norm.running_var"].clone();
   p["norm.running_mean"].zero_();
   p["norm.running_var"].fill_(1);
-  const Tensor ours = normed_convolution(p, "conv", "norm", x, 1, 1, true);
+  const Tensor ours = normed_convolution(p, "conv", "norm", x, 1, 1, 1, true);
   EXPECT_EQ(ours.scalar_type(), torch::kBFloat16);
   EXPECT_TRUE(torch::allclose(ours.to(torch::kFloat32), theirs, 1. / 256, 1e-4));
   EXPECT_TRUE(torch::allclose(p["norm.running_mean"], mean, 1e-4, 1e-5));
   EXPECT_TRUE(torch::allclose(p["norm.running_var"], var, 1e-4, 1e-5));
   // Not in training, it is the two, digit for digit.
-  EXPECT_TRUE(torch::equal(normed_convolution(p, "conv", "norm", x, 1, 1, false),
+  EXPECT_TRUE(torch::equal(normed_convolution(p, "conv", "norm", x, 1, 1, 1, false),
                            batch_norm(p, "norm", convolution(p, "conv", x, 1, 1), false)));
 }
 
