@@ -2,12 +2,9 @@
 #include "apps/lens_arguments.h"
 
 #include <algorithm>
-#include <iomanip>
-#include <sstream>
 
 #include "apps/program.h"
 #include "io/intrinsics_file.h"
-#include "libps/scene/photo_depth.h"
 
 namespace ps::apps {
 
@@ -22,18 +19,6 @@ void LensArguments::add_to(CLI::App& verb) {
       ->check(in_range(1, 179))
       ->excludes(file)
       ->default_str("");
-}
-
-Photo read_photo(const std::string& file, const Context& context, WantedPixels wanted) {
-  Photo photo = ps::read_photo(file, wanted);
-  check_photo(photo.color, file);
-  if (photo.transparent > 0) {
-    std::ostringstream share;
-    share << std::setprecision(2) << 100 * photo.transparent;
-    context.warn(file + ": " + share.str() +
-                 " % of its pixels are transparent; the colours stored under them are taken");
-  }
-  return photo;
 }
 
 PhotoLens choose_lens(const LensArguments& arguments, const Photo& photo, const std::string& name,

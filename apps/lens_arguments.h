@@ -18,15 +18,13 @@ struct LensArguments {
   void add_to(CLI::App& verb);
 };
 
-/// @brief ps::read_photo() and check_photo(); warns of what the photo has that is not heeded.
-Photo read_photo(const std::string& file, const Context& context, WantedPixels wanted = {});
-
 struct PhotoLens {
   Intrinsics intrinsics;
   std::string from;  ///< "--intrinsics", "--fov", "EXIF" or "default"
 };
 
-/// @brief What the user says, else what the photo says, else 60 degrees along the long side; says which.
+/// @brief What the user says, else what the photo says, else 60 degrees along the long side; says
+/// which.
 /// @param name  the photo's, for messages
 PhotoLens choose_lens(const LensArguments& arguments, const Photo& photo, const std::string& name,
                       const Context& context);

@@ -186,7 +186,7 @@ SceneOptions SceneArguments::scene(const Context& context) const {
     throw CLI::ValidationError("--refine-best",
                                "does not go with --samples auto; expected a number of samples");
   }
-  if (refine_best > 0 && (select == "consensus" || select == "likelihood")) {
+  if (refine_best > 0 && !has_judges(select)) {
     throw CLI::ValidationError("--refine-best", "does not go with --select " + select +
                                                     ", which looks at no pictures; expected "
                                                     "discriminator, classifier or both");

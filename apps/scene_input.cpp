@@ -9,6 +9,7 @@
 
 #include "apps/frame_list.h"
 #include "apps/lift_arguments.h"
+#include "apps/photo_input.h"
 #include "apps/program.h"
 #include "apps/scene_report.h"
 #include "io/depth_file.h"
@@ -89,7 +90,7 @@ Depth depth_at(const Photo& photo, const std::string& file, double depth_scale,
 /// @param longest  pixels that are wanted along its long side
 View read_one(const SceneInputArguments& a, const std::string& file, const std::string& depth,
               const DepthModel* model, int longest, const Context& context, Json& report) {
-  const Photo photo = read_photo(file, context, {longest, kShortest});
+  const Photo photo = take_photo(file, context, {longest, kShortest});
   const PhotoLens lens = choose_lens(a.lens, photo, file, context);
   View view;
   view.world_from_cam = kPhotoPose;

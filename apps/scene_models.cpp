@@ -29,6 +29,10 @@ const std::vector<std::string>& selection_names() {
   return names;
 }
 
+bool has_judges(const std::string& selection) {
+  return selection != "consensus" && selection != "likelihood";
+}
+
 void check_codes(const models::Autoencoder& autoencoder, const models::PixelCnn& pixel_cnn,
                  const std::string& file) {
   if (pixel_cnn.codes() == autoencoder.codes()) return;

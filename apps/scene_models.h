@@ -23,6 +23,8 @@ std::string depth_weights(const std::string& weights);
 /// @return the names that --select takes: consensus, likelihood, discriminator, classifier,
 /// both
 const std::vector<std::string>& selection_names();
+/// @return whether judges look at pictures to keep the best completion by it
+bool has_judges(const std::string& selection);
 
 /// @brief Throws ps::Error, naming the PixelCNN's file, unless it continues the autoencoder's
 /// codes.

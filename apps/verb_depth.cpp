@@ -8,6 +8,7 @@
 #include "apps/interrupt.h"
 #include "apps/lens_arguments.h"
 #include "apps/output.h"
+#include "apps/photo_input.h"
 #include "apps/program.h"
 #include "apps/report.h"
 #include "io/atomic_file.h"
@@ -71,7 +72,7 @@ void run_depth(const DepthArguments& a, const Context& context) {
   const Stopwatch total;
   const DepthModel model = load_depth_model(a.weights, context);
   check_outputs(a, model);
-  const Photo photo = read_photo(a.photo, context);
+  const Photo photo = take_photo(a.photo, context);
   const PhotoLens lens = choose_lens(a.lens, photo, a.photo, context);
   const Stopwatch watch;
   Depth depth = photo_depth(model.net, photo.color, lens.intrinsics, model.scale);

@@ -236,10 +236,14 @@ std::string_view check_image_bytes(std::string_view bytes, const std::string& na
 }
 
 bool has_alpha(std::string_view bytes) {
-  if (starts_with(bytes, kPng)) {  // the kind of colour, or a chunk of transparent ones
-    const bool channel = bytes.size() > 25 && (bytes[25] & 4) != 0;
-    const std::size_t pixels = bytes.find("IDAT");
-    return channel || bytes.substr(0, pixels).find("tRNS") != std::string_view::npos;
+  if (starts_with(bytes, kPng)) {  // the kind of colour, or a chunk that makes some transparent
+    if (bytes.size() > 25 && (bytes[25] & 4) != 0) return true;
+    std::size_t at = kPng.size();
+    while (at + 12 <= bytes.size() && bytes.substr(at + 4, 4) != "IDAT") {
+      if (bytes.substr(at + 4, 4) == "tRNS") return true;
+      at += 12 + std::size_t{load_be<std::uint32_t>(bytes, at)};
+    }
+    return false;
   }
   if (bytes.size() < 30 || !starts_with(bytes, "RIFF") || bytes.substr(8, 4) != "WEBP")
     return false;

@@ -14,8 +14,9 @@ namespace ps {
 struct Photo {
   Image color;
   cv::Size size;  ///< of the photo; `color` has fewer pixels where fewer were wanted
-  /// The share of its pixels that the file calls transparent, wholly or in part; their stored
-  /// colours are in `color` all the same.
+  /// The share of its pixels that a PNG or WebP calls transparent, wholly or in part, as far as
+  /// OpenCV tells (of grey with one transparent value it does not); their stored colours are in
+  /// `color` all the same.
   double transparent = 0;
   /// EXIF focal length in pixels of a photo of this size (from FocalLengthIn35mmFilm, as
   /// intrinsics_from_focal_35mm(), or from FocalLength and the focal plane's resolution); empty

@@ -10,10 +10,11 @@ namespace ps::train {
 /// square, the value by -rate * first / (sqrt(second * correction) + eps), the average to it.
 struct AdamRates {
   float gradient = 1;  ///< what gradients are multiplied by
-  float beta1 = .9F, beta2 = .99F;
+  float beta1 = 0, beta2 = 0;
   float shrink = 1;  ///< what the value is multiplied by before it is moved
   float rate = 0;
-  float correction = 1, eps = 1e-8F;
+  float correction = 1;  ///< of second, which begins at 0
+  float eps = 0;
   float to_average = 0;  ///< how far the average goes towards the value
 };
 
@@ -22,13 +23,14 @@ struct AdamRates {
 void move_along(const torch::Tensor& gradient, const torch::Tensor& value,
                 const torch::Tensor& first, const torch::Tensor& second,
                 const torch::Tensor& average, const AdamRates& rates);
-/// @brief The same by libtorch's operators alone, on any device.
+/// @brief The same by libtorch's operators alone, on any device. Both throw c10::Error as torch
+/// does.
 void move_along_by_operators(const torch::Tensor& gradient, const torch::Tensor& value,
                              const torch::Tensor& first, const torch::Tensor& second,
                              const torch::Tensor& average, const AdamRates& rates);
 
-/// @return the sum of squares in double, whatever the number of threads; of a dense float tensor on
-/// the CPU by our own loop
+/// @return the sum of squares, whatever the number of threads; of dense floats on the CPU by our
+/// own loop, in float over 16384 values and in double over those, else in double
 double sum_of_squares(const torch::Tensor& x);
 
 }  // namespace ps::train

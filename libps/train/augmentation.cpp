@@ -55,11 +55,11 @@ void crop_and_mirror(Batch& batch, const Augmentation& how, torch::Generator& ge
   if (batch.lens.defined()) {
     batch.lens = resampled(batch.lens, theta.to(batch.lens.device()), batch.color.size(3));
   }
-  batch.color = upright(batch.color, theta, false);
+  batch.color = sampled_upright(batch.color, theta, false);
   if (batch.depth.defined()) {
     // The crop's focal length is longer by 1 / share, so canonical depth is shorter.
-    batch.depth =
-        upright(batch.depth, theta, true) * share.view({n, 1, 1, 1}).to(batch.color.device());
+    batch.depth = sampled_upright(batch.depth, theta, true) *
+                  share.view({n, 1, 1, 1}).to(batch.color.device());
   }
 }
 

@@ -18,9 +18,6 @@ constexpr int kEncoderWidths[kLevels] = {1, 2, 4, 8, 8, 8, 8, 8};
 constexpr int kDecoderWidths[kLevels - 1] = {8, 8, 8, 8, 4, 2, 1};
 
 std::string encoder_norm(int level) { return models::DepthNet::kEncoderNorms[level]; }
-std::string decoder_norm(int level) {
-  return level + 1 < kLevels ? models::DepthNet::kDecoderNorms[level] : "";
-}
 std::string encoder_name(int level) { return "conv" + std::to_string(level + 1); }
 std::string decoder_name(int level) { return "dconv" + std::to_string(level + 1); }
 
@@ -38,7 +35,7 @@ DepthNet::DepthNet(int f, std::uint64_t seed) : parameters("pts_regressor.", see
     const bool last = i + 1 == kLevels;
     const int out = last ? 1 : f * kDecoderWidths[i];
     add_convolution(parameters, decoder_name(i), in, out, 3, last ? .1 : 1);
-    if (!last) add_batch_norm(parameters, decoder_norm(i), out);
+    if (!last) add_batch_norm(parameters, models::DepthNet::kDecoderNorms[i], out);
     in = last ? out : out + f * kEncoderWidths[kLevels - 2 - i];
   }
 }
@@ -52,15 +49,13 @@ Tensor DepthNet::forward(const Tensor& image, bool training) const {
                            i + 1 < kLevels ? .2F : 1.F, training);
     skips.push_back(x);
   }
-  for (int i = 0; i < kLevels; ++i) {
-    const std::string name = decoder_name(i), norm = decoder_norm(i);
-    if (norm.empty()) {
-      return relu_upsample_to_one(x, parameters[name + ".weight"], parameters[name + ".bias"]);
-    }
-    x = normed_convolution(parameters, name, norm, relu_upsample_2x(x), 1, 1, 1, training);
+  for (int i = 0; i + 1 < kLevels; ++i) {
+    x = normed_convolution(parameters, decoder_name(i), models::DepthNet::kDecoderNorms[i],
+                           relu_upsample_2x(x), 1, 1, 1, training);
     x = torch::cat({x, skips[static_cast<std::size_t>(kLevels - 2 - i)]}, 1);
   }
-  return x;
+  const std::string last = decoder_name(kLevels - 1);
+  return relu_upsample_to_one(x, parameters[last + ".weight"], parameters[last + ".bias"]);
 }
 
 }  // namespace ps::train

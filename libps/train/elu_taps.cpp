@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libps/train/layers.h"
+#include "libps/train/layout.h"
 #include "libps/train/narrow.h"
 
 namespace ps::train {
@@ -94,9 +95,9 @@ class GatherTaps : public torch::autograd::Function<GatherTaps> {
 /// e^x of x <= 0, to a ten millionth of 1, in a form that becomes vectors: 2^n by its bits, times
 /// a polynomial of what is left (Cephes' expf).
 inline float exp_of_negative(float x) {
-  const float bound = chosen(x < -87, -87, x);
-  const float scaled = bound * 1.44269504F;
-  const auto n = static_cast<std::int32_t>(scaled - .5F);  // towards 0: the nearest one
+  const float bound = chosen(x < -87, -87, x);                  // NaN stays NaN,
+  const float scaled = chosen(x >= -87, x, -87) * 1.44269504F;  // but is no whole number
+  const auto n = static_cast<std::int32_t>(scaled - .5F);       // towards 0: the nearest one
   const auto whole = static_cast<float>(n);
   const float r = (bound - whole * .693359375F) + whole * 2.12194440e-4F;
   float p = 1.9875691500e-4F;
@@ -111,12 +112,11 @@ inline float exp_of_negative(float x) {
   return (p * r * r + r + 1) * power;
 }
 
-/// NaN stays NaN: it is neither above 0 nor kept from the sum.
 PS_ANY_WIDTH void elu_both(const float* x, Narrow* to, std::int64_t cells, std::int64_t c) {
   for (std::int64_t i = 0; i < cells; ++i, x += c, to += 2 * c) {
     for (std::int64_t k = 0; k < c; ++k) {
       const float size = chosen(x[k] > 0, -x[k], x[k]);
-      const float below = exp_of_negative(size) - 1 + 0 * size;
+      const float below = exp_of_negative(size) - 1;
       to[k] = narrowed(chosen(x[k] > 0, x[k], below));
       to[c + k] = narrowed(chosen(x[k] > 0, below, -x[k]));
     }
@@ -136,13 +136,14 @@ PS_ANY_WIDTH void add_narrow(const Narrow* from, float* to, std::int64_t n) {
   for (std::int64_t i = 0; i < n; ++i) to[i] += widened(from[i]);
 }
 
-/// elu_taps(), or concat_elu() where the indices are empty.
+/// elu_taps(), or concat_elu() where nothing is gathered.
 class EluTaps : public torch::autograd::Function<EluTaps> {
  public:
   static Tensor forward(AutogradContext* context, const Tensor& image, const Tensor& from,
-                        const Tensor& to) {
+                        const Tensor& to, bool gathers) {
     const Tensor x = image.contiguous();
     context->save_for_backward({x, to});
+    context->saved_data["gathers"] = gathers;
     const std::int64_t cells = x.size(0), c = x.size(1);
     const Tensor out = torch::empty({cells, 2 * c}, x.options().dtype(torch::kBFloat16));
     auto* const both = static_cast<Narrow*>(out.data_ptr());
@@ -150,7 +151,7 @@ class EluTaps : public torch::autograd::Function<EluTaps> {
     at::parallel_for(0, cells, 512, [&](std::int64_t begin, std::int64_t end) {
       elu_both(values + begin * c, both + 2 * begin * c, end - begin, c);
     });
-    return from.numel() > 0 ? rows_of(out, from).view({cells, 2 * kTaps * c}) : out;
+    return gathers ? rows_of(out, from).view({cells, 2 * kTaps * c}) : out;
   }
 
   static variable_list backward(AutogradContext* context, variable_list gradients) {
@@ -160,7 +161,8 @@ class EluTaps : public torch::autograd::Function<EluTaps> {
     const std::int64_t cells = x.size(0), c = x.size(1);
     const Tensor out = torch::empty_like(x);
     const auto* const above = static_cast<const Narrow*>(gradient.data_ptr());
-    const std::int64_t* const index = to.numel() > 0 ? to.data_ptr<std::int64_t>() : nullptr;
+    const bool gathers = context->saved_data["gathers"].toBool();
+    const std::int64_t* const index = gathers ? to.data_ptr<std::int64_t>() : nullptr;
     at::parallel_for(0, cells, 512, [&](std::int64_t begin, std::int64_t end) {
       std::vector<float> sum(static_cast<std::size_t>(2 * c));
       for (std::int64_t i = begin; i < end; ++i) {
@@ -172,13 +174,11 @@ class EluTaps : public torch::autograd::Function<EluTaps> {
         pass_back(x.data_ptr<float>() + i * c, sum.data(), out.data_ptr<float>() + i * c, c);
       }
     });
-    return {out, Tensor(), Tensor()};
+    return {out, Tensor(), Tensor(), Tensor()};
   }
 };
 
-bool is_one_pass(const Tensor& x) {
-  return products_are_narrow() && x.is_cpu() && x.scalar_type() == torch::kFloat32;
-}
+bool is_one_pass(const Tensor& x) { return products_are_narrow() && is_float_on_cpu(x); }
 
 }  // namespace
 
@@ -189,13 +189,13 @@ Tensor gathered_taps(const Tensor& x, const Tensor& from, const Tensor& to) {
 Tensor concat_elu(const Tensor& x) {
   if (is_one_pass(x)) {
     const Tensor none = torch::empty({0}, torch::kInt64);
-    return EluTaps::apply(x, none, none);
+    return EluTaps::apply(x, none, none, false);
   }
   return as_factor(torch::elu(torch::cat({x, -x}, 1)));
 }
 
 Tensor elu_taps(const Tensor& x, const Tensor& from, const Tensor& to) {
-  if (is_one_pass(x)) return EluTaps::apply(x, from, to);
+  if (is_one_pass(x)) return EluTaps::apply(x, from, to, true);
   return gathered_taps(concat_elu(x), from, to);
 }
 

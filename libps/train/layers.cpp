@@ -88,11 +88,4 @@ Tensor batch_norm(const Parameters& p, const std::string& name, const Tensor& x,
                            p[name + ".running_var"], training, 0.1, 1e-5, false);
 }
 
-Tensor normed(const Parameters& p, const std::string& name, const Tensor& x) {
-  const Tensor& v = p[name + ".weight_v"];
-  const Tensor weight = v * (p[name + ".weight_g"] / v.norm(2, {1}, true));
-  // A 1x1 convolution stays in oneDNN's threads; a matrix product would wake the BLAS's own.
-  return conv2d(x, weight.unsqueeze(2).unsqueeze(3), p[name + ".bias"]);
-}
-
 }  // namespace ps::train

@@ -20,8 +20,9 @@ void add_normed(Parameters& p, const std::string& name, int in, int out);
 
 /// @brief While there is one, the products of this thread's convolutions are of bfloat16 values and
 /// summed in float (Kalamkar and others, A Study of BFLOAT16 for Deep Learning Training, 2019):
-/// a depth network's step is 1.6 times as fast where the processor has AMX. Weights, activations,
-/// norms and losses stay float.
+/// a depth network's step is several times as fast where the processor has AMX. Weights, sums and
+/// losses stay float; activations between products are bfloat16, too, where normed_convolution(),
+/// relu_upsample_2x() and elu_taps() make them.
 class NarrowProducts {
  public:
   explicit NarrowProducts(bool narrow);
@@ -40,10 +41,10 @@ Tensor conv2d(const Tensor& x, const Tensor& weight, const Tensor& bias, int str
               int padding = 0);
 Tensor convolution(const Parameters& p, const std::string& name, const Tensor& x, int stride,
                    int padding);
+/// @brief Of 4x4 taps at stride 2, padded by one; where products are narrow, as a 3x3 convolution
+/// to four times the channels, as libtorch 1.13 has no narrow transposed one.
 Tensor transposed(const Parameters& p, const std::string& name, const Tensor& x);
 /// @brief By the batch in training, which also moves the running mean and variance; else by those.
 Tensor batch_norm(const Parameters& p, const std::string& name, const Tensor& x, bool training);
-/// @brief On the channels of every pixel.
-Tensor normed(const Parameters& p, const std::string& name, const Tensor& x);
 
 }  // namespace ps::train

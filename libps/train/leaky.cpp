@@ -3,6 +3,7 @@
 
 #include <ATen/Parallel.h>
 
+#include "libps/train/layout.h"
 #include "libps/train/narrow.h"
 
 namespace ps::train {
@@ -32,7 +33,7 @@ PS_ANY_WIDTH void backwards(const Narrow* x, const Narrow* gradient, Narrow* to,
 class Leaky : public torch::autograd::Function<Leaky> {
  public:
   static Tensor forward(AutogradContext* context, const Tensor& image, double slope) {
-    const Tensor x = image.contiguous(torch::MemoryFormat::ChannelsLast);
+    const Tensor x = channels_last(image);
     context->save_for_backward({x});
     context->saved_data["slope"] = slope;
     const Tensor out = torch::empty_like(x);
@@ -47,7 +48,7 @@ class Leaky : public torch::autograd::Function<Leaky> {
   static variable_list backward(AutogradContext* context, variable_list gradients) {
     const Tensor x = context->get_saved_variables()[0];
     const auto slope = static_cast<float>(context->saved_data["slope"].toDouble());
-    const Tensor gradient = gradients[0].contiguous(torch::MemoryFormat::ChannelsLast);
+    const Tensor gradient = channels_last(gradients[0]);
     const Tensor out = torch::empty_like(x);
     const auto* const from = static_cast<const Narrow*>(x.data_ptr());
     const auto* const above = static_cast<const Narrow*>(gradient.data_ptr());
@@ -62,7 +63,7 @@ class Leaky : public torch::autograd::Function<Leaky> {
 }  // namespace
 
 Tensor leaky(const Tensor& x, float slope) {
-  if (!x.is_cpu() || x.scalar_type() != torch::kBFloat16) {
+  if (!is_narrow_on_cpu(x)) {
     return torch::leaky_relu(x, slope);
   }
   return Leaky::apply(x, static_cast<double>(slope));

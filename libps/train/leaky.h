@@ -6,8 +6,9 @@
 
 namespace ps::train {
 
-/// @brief torch::leaky_relu(x, slope), digit for digit, in one pass forward and one back where x is
-/// of bfloat16 on the CPU. It has no second derivatives then.
+/// @brief torch::leaky_relu(x, slope). Where x is of bfloat16 on the CPU, in one pass forward and
+/// one back, digit for digit what is computed in float and then rounded. It has no second
+/// derivatives then.
 /// @param x  [n, c, h, w], of any layout
 /// Throws c10::Error as torch does.
 torch::Tensor leaky(const torch::Tensor& x, float slope);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "libps/train/layout.h"
 #include "libps/train/narrow.h"
 
 namespace ps::train {
@@ -54,7 +55,7 @@ PS_ANY_WIDTH Sum sum_errors(const float* error, const float* known, std::int64_t
       n, [&](std::int64_t i) { return error[i]; }, [&](std::int64_t i) { return known[i]; });
 }
 
-/// Sum of known |error - middle|, and of their signs.
+/// Sum of known |error - middle|, and, as its count, of their signs.
 PS_ANY_WIDTH Sum sum_off(const float* error, const float* known, float middle, std::int64_t n) {
   return added(
       n,
@@ -178,7 +179,6 @@ Losses losses_of(Level& level, float weight) {
   const auto n = static_cast<std::int64_t>(level.error.size());
   const Sum all = sum_errors(error, known, n);
   const float middle = kForgiven * all.mean(), share = all.share();
-  // Here the count is that of the signs.
   const Sum off = sum_off(error, known, middle, n);
   const float by = weight * share;
   pull_off(error, known, middle, by, by * kForgiven * share * static_cast<float>(off.count),
@@ -187,14 +187,19 @@ Losses losses_of(Level& level, float weight) {
   return {value, add_differences(level, kScales, weight * kByGradient)};
 }
 
+/// 0 where the truth is not known, whatever stands there.
+Tensor errors_of(const Tensor& log_depth, const Tensor& log_truth, const Tensor& known) {
+  return (log_depth - log_truth).masked_fill(known == 0, 0);
+}
+
 class Loss : public torch::autograd::Function<Loss> {
  public:
   static variable_list forward(AutogradContext* context, const Tensor& log_depth,
                                const Tensor& log_truth, const Tensor& known) {
     const Tensor mask = known.contiguous();
-    const Tensor error = ((log_depth.detach() - log_truth) * mask).contiguous();
+    const Tensor error = errors_of(log_depth.detach(), log_truth, mask).contiguous();
     const Tensor gradient = torch::empty_like(error);
-    const std::int64_t n = error.size(0), size = error[0].numel();
+    const std::int64_t n = error.size(0), size = error.size(2) * error.size(3);
     const Tensor parts = torch::zeros({n, 2});
     const float weight = 1 / static_cast<float>(n);
     at::parallel_for(0, n, 1, [&](std::int64_t begin, std::int64_t end) {
@@ -247,7 +252,7 @@ Tensor masked_mean(const Tensor& values, const Tensor& mask) {
 
 LogDepthLoss log_depth_loss_by_operators(const Tensor& log_depth, const Tensor& log_truth,
                                          const Tensor& known) {
-  const Tensor error = (log_depth - log_truth) * known;
+  const Tensor error = errors_of(log_depth, log_truth, known);
   const Tensor common = masked_mean(error, known).view({-1, 1, 1, 1});
   const Tensor value = masked_mean((error - kForgiven * common).abs(), known).mean();
   const Tensor gradient = differences(error, known).mean();
@@ -255,7 +260,10 @@ LogDepthLoss log_depth_loss_by_operators(const Tensor& log_depth, const Tensor& 
 }
 
 LogDepthLoss log_depth_loss(const Tensor& log_depth, const Tensor& log_truth, const Tensor& known) {
-  if (!log_depth.is_cpu() || log_depth.scalar_type() != torch::kFloat32) {
+  TORCH_CHECK(log_depth.sizes() == log_truth.sizes() && log_depth.sizes() == known.sizes() &&
+                  log_depth.dim() == 4 && log_depth.size(1) == 1,
+              "log depth, its truth and where it is known are not [n, 1, h, w]");
+  if (!is_float_on_cpu(log_depth)) {
     return log_depth_loss_by_operators(log_depth, log_truth, known);
   }
   const variable_list all = Loss::apply(log_depth, log_truth, known);

@@ -17,10 +17,11 @@ struct LogDepthLoss {
 /// forgiven. Differences of neighbours' errors, at four scales (Ranftl and others, MiDaS, TPAMI
 /// 2022, equation 11), make edges where there are edges, and none where there are none. Of float on
 /// the CPU value and gradients are our own loop: libtorch 1.13 takes 21 ms of a core for eight
-/// pictures of 256x256, a tenth of a step.
+/// pictures of 256x256, a tenth of a step. It has no second derivatives then.
 /// @param log_depth  [n, 1, h, w], with gradients
-/// @param log_truth  [n, 1, h, w]; read where known
+/// @param log_truth  [n, 1, h, w]; counts where known alone
 /// @param known      [n, 1, h, w], 1 where depth is known, else 0
+/// Throws c10::Error when the shapes are others.
 LogDepthLoss log_depth_loss(const torch::Tensor& log_depth, const torch::Tensor& log_truth,
                             const torch::Tensor& known);
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "libps/train/layers.h"
+#include "libps/train/layout.h"
 #include "libps/train/leaky.h"
 #include "libps/train/narrow.h"
 
@@ -21,7 +22,6 @@ constexpr double kEpsilon = 1e-5, kMomentum = .1;
 constexpr std::int64_t kBlock = 64;    ///< pixels summed in float
 constexpr std::int64_t kChunk = 1024;  ///< pixels whose sums are one thread's
 
-Tensor channels_last(const Tensor& x) { return x.contiguous(torch::MemoryFormat::ChannelsLast); }
 const Narrow* bits_of(const Tensor& x) { return static_cast<const Narrow*>(x.data_ptr()); }
 
 /// Of each channel: x -> by * x + add, times the slope where that is below 0.
@@ -177,6 +177,7 @@ class NarrowNorm : public torch::autograd::Function<NarrowNorm> {
 
 Tensor narrow_batch_norm(const Tensor& x, const Tensor& weight, const Tensor& bias,
                          const Tensor& running_mean, const Tensor& running_var, float slope) {
+  TORCH_CHECK(is_narrow_on_cpu(x), "not of bfloat16 on the CPU");
   return NarrowNorm::apply(x, weight, bias, running_mean, running_var, static_cast<double>(slope));
 }
 

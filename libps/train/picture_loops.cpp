@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "libps/train/layout.h"
 #include "libps/train/narrow.h"
 
 namespace ps::train {
@@ -14,12 +15,8 @@ namespace {
 
 using torch::Tensor;
 
-constexpr float kDarkest = 1e-4F;  ///< whose power has a gradient
+constexpr float kDarkest = 1e-4F;
 constexpr int kChannels = 3;
-
-bool is_ours(const Tensor& x) { return x.is_cpu() && x.scalar_type() == torch::kFloat32; }
-
-Tensor channels_last(const Tensor& x) { return x.contiguous(torch::MemoryFormat::ChannelsLast); }
 
 /// Where a pixel of the result lies along one axis.
 struct Place {
@@ -32,7 +29,7 @@ std::vector<Place> places(std::int64_t count, float scale, float shift, bool nea
   std::vector<Place> all;
   for (std::int64_t i = 0; i < count; ++i) {
     const float at = scale * ((2 * static_cast<float>(i) + 1) / n - 1) + shift;
-    const float pixel = std::clamp(((at + 1) * n - 1) / 2, 0.F, n - 1);
+    const float pixel = std::min(std::max(0.F, ((at + 1) * n - 1) / 2), n - 1);  // NaN is 0
     const float low = nearest ? std::nearbyint(pixel) : std::floor(pixel);
     const auto first = static_cast<std::int64_t>(low);
     all.push_back({first, std::min(first + 1, count - 1), nearest ? 0 : pixel - low});
@@ -51,6 +48,10 @@ void spread(const float* row, const std::vector<Place>& xs, std::int64_t c, floa
     for (std::int64_t i = 0; i < c; ++i) to[i] = a[i] + x.by_high * (b[i] - a[i]);
     to += c;
   }
+}
+
+void pick(const float* row, const std::vector<Place>& xs, std::int64_t c, float* to) {
+  for (const Place& x : xs) to = std::copy_n(row + x.low * c, c, to);
 }
 
 /// From -1..1 to kDarkest..1.
@@ -86,16 +87,17 @@ PS_ANY_WIDTH void contrast_from(float* x, float mean, float contrast, std::int64
 
 }  // namespace
 
-Tensor upright(const Tensor& image, const Tensor& theta, bool nearest) {
-  if (!is_ours(image)) {
+Tensor sampled_upright(const Tensor& image, const Tensor& theta, bool nearest) {
+  if (!is_float_on_cpu(image)) {
     const Tensor grid =
-        torch::nn::functional::affine_grid(theta.to(image.device()), image.sizes(), false);
+        torch::nn::functional::affine_grid(theta.to(image.options()), image.sizes(), false);
     return channels_last(torch::grid_sampler(image, grid, nearest ? 1 : 0, 1, false));
   }
+  TORCH_CHECK(theta.sizes() == torch::IntArrayRef({image.size(0), 2, 3}), "theta is not [n, 2, 3]");
   const Tensor x = channels_last(image);
   const Tensor out = torch::empty_like(x);
   const std::int64_t c = x.size(1), h = x.size(2), w = x.size(3), row = w * c;
-  const auto maps = theta.contiguous();
+  const Tensor maps = theta.to(torch::kFloat32).contiguous();
   at::parallel_for(0, x.size(0), 1, [&](std::int64_t begin, std::int64_t end) {
     std::vector<float> mixed(static_cast<std::size_t>(row));
     for (std::int64_t i = begin; i < end; ++i) {
@@ -104,8 +106,13 @@ Tensor upright(const Tensor& image, const Tensor& theta, bool nearest) {
       const float* const from = x.data_ptr<float>() + i * h * row;
       float* to = out.data_ptr<float>() + i * h * row;
       for (const Place& y : ys) {
-        mix(from + y.low * row, from + y.high * row, y.by_high, mixed.data(), row);
-        spread(mixed.data(), xs, c, to);
+        // The nearest is copied, as what is not finite would not stay where it is.
+        const float* rows = from + y.low * row;
+        if (!nearest) {
+          mix(rows, from + y.high * row, y.by_high, mixed.data(), row);
+          rows = mixed.data();
+        }
+        (nearest ? pick : spread)(rows, xs, c, to);
         to += row;
       }
     }
@@ -124,10 +131,11 @@ Tensor tinted_by_operators(const Tensor& color, const Tints& tints) {
 }
 
 Tensor tinted(const Tensor& color, const Tints& tints) {
-  if (!is_ours(color) || color.size(1) != kChannels) return tinted_by_operators(color, tints);
+  if (!is_float_on_cpu(color) || color.size(1) != kChannels)
+    return tinted_by_operators(color, tints);
   const Tensor x = channels_last(color);
   const Tensor out = torch::empty_like(x);
-  const std::int64_t row = x.size(3) * kChannels, size = x[0].numel();
+  const std::int64_t row = x.size(3) * kChannels, size = x.size(2) * row;
   for (std::int64_t i = 0; i < x.size(0); ++i) {
     float* const to = out.data_ptr<float>() + i * size;
     to_light(x.data_ptr<float>() + i * size, to, size);

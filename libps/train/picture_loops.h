@@ -8,12 +8,12 @@ namespace ps::train {
 
 /// @brief torch::grid_sampler of an upright square: theta is [[sx, 0, tx], [0, sy, ty]] of each
 /// picture, which maps -1..1 of the result into -1..1 of the picture (align_corners = false);
-/// what lies outside is the border's. Of float on the CPU it is our own loop.
+/// what lies outside is the border's. Of float on the CPU it is our own loop, without gradients.
 /// @param image    [n, c, h, w] of any layout
-/// @param theta    [n, 2, 3] on the CPU
+/// @param theta    [n, 2, 3] of float on the CPU; else throws c10::Error
 /// @param nearest  else bilinear
 /// @return as image, channels last
-torch::Tensor upright(const torch::Tensor& image, const torch::Tensor& theta, bool nearest);
+torch::Tensor sampled_upright(const torch::Tensor& image, const torch::Tensor& theta, bool nearest);
 
 /// How each picture's colours are changed, one after another; of [n, 1, 1, 1] but for tint.
 struct Tints {
@@ -24,7 +24,7 @@ struct Tints {
   torch::Tensor contrast;    ///< of what differs from the picture's mean
 };
 
-/// @brief Of float on the CPU by our own loops.
+/// @brief Of float on the CPU by our own loops, without gradients.
 /// @param color  [n, 3, h, w] in [-1, 1]
 /// @return as color, in [-1, 1], channels last
 torch::Tensor tinted(const torch::Tensor& color, const Tints& tints);

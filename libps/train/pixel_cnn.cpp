@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -19,16 +20,15 @@ constexpr std::array<std::array<int, 3>, 2> kBlocks = {{{2, 2, 2}, {2, 3, 3}}};
 /// a matrix product would wake the BLAS's own. Rows are laid out as wide pictures, as oneDNN takes
 /// pixels of a row together.
 Tensor rows_times(const Tensor& x, const Tensor& weight, const Tensor& bias) {
-  constexpr std::int64_t kWidth = 128;
-  const std::int64_t width = x.size(0) % kWidth == 0 ? kWidth : 1;
+  const std::int64_t width = std::gcd(x.size(0), std::int64_t{128});
   const Tensor pixels = x.view({1, x.size(0) / width, width, x.size(1)}).permute({0, 3, 1, 2});
   const Tensor out = torch::conv2d(pixels, weight.view({weight.size(0), -1, 1, 1}), bias);
   return out.permute({0, 2, 3, 1}).reshape({x.size(0), weight.size(0)});
 }
 
 /// rows_times() of narrow factors. Gradients are products of the same kinds, and a matrix product,
-/// which libtorch leaves to oneDNN where it is narrow; a 1x1 convolution's own gradients take two
-/// to three times as long there.
+/// which libtorch leaves to oneDNN where it is narrow; a 1x1 convolution's own gradients take
+/// twice as long there.
 class NarrowProduct : public torch::autograd::Function<NarrowProduct> {
  public:
   static Tensor forward(torch::autograd::AutogradContext* context, const Tensor& x,
@@ -48,8 +48,10 @@ class NarrowProduct : public torch::autograd::Function<NarrowProduct> {
 };
 
 Tensor product(const Tensor& x, const Tensor& weight, const Tensor& bias) {
-  if (!products_are_narrow() || !x.is_cpu()) return rows_times(x, weight, bias);
-  return NarrowProduct::apply(as_factor(x).contiguous(), weight, bias);
+  if (!products_are_narrow()) return rows_times(x, weight, bias);
+  const Tensor narrow = as_factor(x).contiguous();
+  if (x.is_cpu()) return NarrowProduct::apply(narrow, weight, bias);
+  return rows_times(narrow, as_factor(weight), as_factor(bias)).to(torch::kFloat32);
 }
 
 /// @param read  what its taps read of each cell

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kPublishedWidth = 64, kShippedWidth = 16;  ///< g, and d of the discriminator
 /// Weights of losses. By L1 alone pictures blur; without it they are sharp in the wrong places.
-constexpr double kPixels = 3, kPerceptual = 1, kAdversarial = 0.03, kMatching = 0.5;
+constexpr double kPixels = 6, kPerceptual = 1.5, kAdversarial = 0.03, kMatching = 0.5;
 
 double psnr(const Tensor& a, const Tensor& b, const Tensor& where) {
   const Tensor error =

@@ -141,6 +141,7 @@ class Run {
     save_checkpoint(*stage_, options_, step_);
     report_.weights = save_weights(*stage_, options_, step_);
     report_.steps = step_;
+    report_.batch = options_.batch;
     report_.seconds = seconds_since(start);
     report_.images_per_second =
         static_cast<double>((step_ - first) * options_.batch) / std::max(training_seconds_, 1e-9);

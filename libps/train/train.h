@@ -44,8 +44,8 @@ struct TrainOptions {
   int curriculum = -1;
   std::uint64_t seed = 0;
   std::string device = "cpu";  ///< or "cuda"
-  /// Of the products of convolutions: "f32", or "bf16", which is faster where the processor
-  /// has AMX; scores are always of f32.
+  /// Of the products of convolutions and what goes from one to the next: "f32", or "bf16", which is
+  /// faster where the processor has AMX; scores are always of f32.
   std::string arithmetic = "f32";
   int threads = 0;  ///< 0 = all
   std::int64_t save_every = 500, test_every = 1000;
@@ -70,6 +70,7 @@ using TrainProgress = std::function<bool(const TrainEvent&)>;
 
 struct TrainReport {
   std::int64_t steps = 0;  ///< done in all
+  int batch = 0;           ///< examples a step
   double seconds = 0;      ///< of this call
   double images_per_second = 0;
   std::int64_t parameters = 0;

@@ -7,14 +7,13 @@
 #include <vector>
 
 #include "libps/train/layers.h"
+#include "libps/train/layout.h"
 #include "libps/train/narrow.h"
 
 namespace ps::train {
 namespace {
 
 using torch::Tensor;
-
-constexpr float kNear = .75f, kFar = .25f;
 
 /// to = kNear * near + kFar * far
 void blend(const float* near, const float* far, float* to, std::int64_t n) {
@@ -43,8 +42,6 @@ PS_ANY_WIDTH void gather_back(const float* row, float* to, std::int64_t w, std::
     for (std::int64_t i = 0; i < c; ++i) out[i] = kNear * (b[i] + d[i]) + kFar * (a[i] + e[i]);
   }
 }
-
-Tensor channels_last(const Tensor& x) { return x.contiguous(torch::MemoryFormat::ChannelsLast); }
 
 Tensor empty_like_of(const Tensor& x, std::int64_t h, std::int64_t w) {
   return torch::empty({x.size(0), x.size(1), h, w}, x.options(), torch::MemoryFormat::ChannelsLast);
@@ -187,14 +184,14 @@ class ReluUpsample : public torch::autograd::Function<ReluUpsample> {
 }  // namespace
 
 Tensor relu_upsample_2x(const Tensor& x) {
-  if (!x.is_cpu() || x.scalar_type() != torch::kBFloat16) {
+  if (!is_narrow_on_cpu(x)) {
     return as_factor(upsample_2x(torch::relu(x)));
   }
   return ReluUpsample::apply(x);
 }
 
 Tensor upsample_2x(const Tensor& x) {
-  if (!x.is_cpu() || x.scalar_type() != torch::kFloat32) {
+  if (!is_float_on_cpu(x)) {
     return torch::upsample_bilinear2d(x, {2 * x.size(2), 2 * x.size(3)}, false);
   }
   return Upsample::apply(x);

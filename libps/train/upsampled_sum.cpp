@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "libps/train/layers.h"
+#include "libps/train/layout.h"
 #include "libps/train/narrow.h"
 #include "libps/train/upsample.h"
 
@@ -17,8 +18,7 @@ using torch::Tensor;
 using torch::autograd::AutogradContext;
 using torch::autograd::variable_list;
 
-constexpr float kNear = .75F, kFar = .25F;
-constexpr int kTaps = 3, kMaps = kTaps * kTaps;
+constexpr int kSide = 3, kMaps = kSide * kSide;
 
 /// The two rows of h that make row y of 2 h.
 struct Pair {
@@ -73,7 +73,7 @@ void to_pixels(const float* planes, Narrow* pixels, std::int64_t count) {
 template <class Body>
 void over_taps(std::int64_t h, const Body& body) {
   for (std::int64_t y = 0; y < 2 * h; ++y) {
-    for (int ky = 0; ky < kTaps; ++ky) {
+    for (int ky = 0; ky < kSide; ++ky) {
       const std::int64_t from = y + ky - 1;
       if (from >= 0 && from < 2 * h) body(y, ky, pair_of(from, h));
     }
@@ -84,38 +84,38 @@ void over_taps(std::int64_t h, const Body& body) {
 /// @param out     2 h rows of 2 w
 void sum_planes(const float* planes, float* out, std::int64_t h, std::int64_t w) {
   // For each tap across, what the three taps down add up to, before it is widened.
-  std::vector<float> sums(static_cast<std::size_t>(2 * h * kTaps * w));
+  std::vector<float> sums(static_cast<std::size_t>(2 * h * kSide * w));
   over_taps(h, [&](std::int64_t y, int ky, Pair rows) {
-    for (int kx = 0; kx < kTaps; ++kx) {
-      const float* const plane = planes + (kTaps * ky + kx) * h * w;
-      add_blend(plane + rows.near * w, plane + rows.far * w, sums.data() + (y * kTaps + kx) * w, w);
+    for (int kx = 0; kx < kSide; ++kx) {
+      const float* const plane = planes + (kSide * ky + kx) * h * w;
+      add_blend(plane + rows.near * w, plane + rows.far * w, sums.data() + (y * kSide + kx) * w, w);
     }
   });
   std::vector<float> wide(static_cast<std::size_t>(2 * w + 2));
   std::fill(out, out + 4 * h * w, 0.F);
   for (std::int64_t y = 0; y < 2 * h; ++y) {
-    for (int kx = 0; kx < kTaps; ++kx) {
-      widen(sums.data() + (y * kTaps + kx) * w, wide.data() + 1, w);
+    for (int kx = 0; kx < kSide; ++kx) {
+      widen(sums.data() + (y * kSide + kx) * w, wide.data() + 1, w);
       add_times(wide.data() + kx, 1, out + 2 * y * w, 2 * w);
     }
   }
 }
 
 void pass_to_planes(const float* gradient, float* planes, std::int64_t h, std::int64_t w) {
-  std::vector<float> wide(static_cast<std::size_t>(2 * w + 2)), shifted(wide.size());
-  std::vector<float> parts(static_cast<std::size_t>(2 * h * kTaps * w));
+  std::vector<float> wide(static_cast<std::size_t>(2 * w + 2));
+  std::vector<float> parts(static_cast<std::size_t>(2 * h * kSide * w));
   for (std::int64_t y = 0; y < 2 * h; ++y) {
     std::copy(gradient + 2 * y * w, gradient + 2 * (y + 1) * w, wide.data() + 1);
-    for (int kx = 0; kx < kTaps; ++kx) {
+    for (int kx = 0; kx < kSide; ++kx) {
       // Tap kx of pixel x reads pixel x + kx - 1: that one is passed what x was.
-      narrow_back(wide.data() + 2 - kx, parts.data() + (y * kTaps + kx) * w, w);
+      narrow_back(wide.data() + 2 - kx, parts.data() + (y * kSide + kx) * w, w);
     }
   }
   std::fill(planes, planes + kMaps * h * w, 0.F);
   over_taps(h, [&](std::int64_t y, int ky, Pair rows) {
-    for (int kx = 0; kx < kTaps; ++kx) {
-      float* const plane = planes + (kTaps * ky + kx) * h * w;
-      const float* const part = parts.data() + (y * kTaps + kx) * w;
+    for (int kx = 0; kx < kSide; ++kx) {
+      float* const plane = planes + (kSide * ky + kx) * h * w;
+      const float* const part = parts.data() + (y * kSide + kx) * w;
       add_times(part, kNear, plane + rows.near * w, w);
       add_times(part, kFar, plane + rows.far * w, w);
     }
@@ -133,10 +133,9 @@ void over_pictures(std::int64_t n, std::int64_t values, const Body& body) {
 /// [n, 9, h, w] of bfloat16, each map shifted by its tap and upsampled: the sum, in float.
 class UpsampledSum : public torch::autograd::Function<UpsampledSum> {
  public:
-  static Tensor forward(AutogradContext* context, const Tensor& maps) {
-    const Tensor x = maps.contiguous(torch::MemoryFormat::ChannelsLast);
+  static Tensor forward(AutogradContext*, const Tensor& maps) {
+    const Tensor x = channels_last(maps);
     const std::int64_t n = x.size(0), h = x.size(2), w = x.size(3);
-    context->saved_data["maps"] = torch::empty_like(x);
     const Tensor out = torch::empty({n, 1, 2 * h, 2 * w}, x.options().dtype(torch::kFloat32));
     const auto* const from = static_cast<const Narrow*>(x.data_ptr());
     float* const to = out.data_ptr<float>();
@@ -147,10 +146,11 @@ class UpsampledSum : public torch::autograd::Function<UpsampledSum> {
     return out;
   }
 
-  static variable_list backward(AutogradContext* context, variable_list gradients) {
-    const Tensor out = context->saved_data["maps"].toTensor();
+  static variable_list backward(AutogradContext*, variable_list gradients) {
     const Tensor gradient = gradients[0].contiguous();
-    const std::int64_t n = out.size(0), h = out.size(2), w = out.size(3);
+    const std::int64_t n = gradient.size(0), h = gradient.size(2) / 2, w = gradient.size(3) / 2;
+    const Tensor out = torch::empty({n, kMaps, h, w}, gradient.options().dtype(torch::kBFloat16),
+                                    torch::MemoryFormat::ChannelsLast);
     const float* const from = gradient.data_ptr<float>();
     auto* const to = static_cast<Narrow*>(out.data_ptr());
     over_pictures(n, kMaps * h * w, [&](std::int64_t i, float* planes) {
@@ -164,11 +164,11 @@ class UpsampledSum : public torch::autograd::Function<UpsampledSum> {
 }  // namespace
 
 Tensor relu_upsample_to_one(const Tensor& x, const Tensor& weight, const Tensor& bias) {
-  if (!x.is_cpu() || x.scalar_type() != torch::kBFloat16) {
-    return conv2d(relu_upsample_2x(x), weight, bias, 1, 1);
+  if (!is_narrow_on_cpu(x)) {
+    return conv2d(relu_upsample_2x(x).to(weight.scalar_type()), weight, bias, 1, 1);
   }
-  const Tensor by_tap = weight.view({weight.size(1), kMaps}).t().reshape({kMaps, -1, 1, 1});
-  const Tensor maps = torch::conv2d(torch::relu(x), as_factor(by_tap));
+  const Tensor by_tap = weight.reshape({weight.size(1), kMaps}).t().reshape({kMaps, -1, 1, 1});
+  const Tensor maps = torch::conv2d(torch::relu(x), by_tap.to(torch::kBFloat16));
   return UpsampledSum::apply(maps) + bias.view({1, 1, 1, 1});
 }
 

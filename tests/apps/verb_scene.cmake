@@ -130,6 +130,7 @@ app_test(scene_refuses_what_it_cannot_do [=[
   fails 2 "'35grad' is no angle.*34deg" scene $S/photo.png -o a --range-horizontal 35grad
   fails 2 "'0'; expected 1 to 1000, or auto" scene $S/photo.png -o a --samples 0
   fails 2 'refine-best' scene $S/photo.png -o a --samples auto --refine-best 3
+  fails 2 'refine-best.*likelihood' scene $S/photo.png -o a --refine-best 3 --select likelihood
   fails 2 'refine-best.*consensus.*expected discriminator' scene $S/photo.png -o a --refine-best 3
   fails 2 'directions' scene $S/photo.png -o a --directions back
   fails 2 'left is given twice' scene $S/photo.png -o a --directions left,up,left

@@ -214,6 +214,14 @@ TEST(Photo, transparent_pixels_are_told_and_keep_their_colours) {
         << extension;
   }
   EXPECT_EQ(parse_photo(encoded(".png", plain), "a").transparent, 0);
+  // Lossy WebP, and 16 bits a channel.
+  EXPECT_GT(with(".webp", {cv::IMWRITE_WEBP_QUALITY, 80}).transparent, 0);
+  cv::Mat deep;
+  four.convertTo(deep, CV_16U, 257);
+  const Photo sixteen = parse_photo(encoded(".png", deep), "a.png");
+  EXPECT_DOUBLE_EQ(sixteen.transparent, 1. / plain.rows);
+  EXPECT_EQ(cv::norm(sixteen.color, parse_photo(encoded(".png", plain), "a").color, cv::NORM_INF),
+            0);
 }
 
 TEST(Photo, focal_lengths_that_cannot_be_are_left_out) {

@@ -38,13 +38,18 @@ TEST(AdamLoops, move_weights_as_operators_do) {
         const Tensor value = last(noise(shape, 1)), first = last(noise(shape, 2)),
                      second = last(noise(shape, 3).square()), average = last(noise(shape, 4));
         const Tensor gradient = same ? last(noise(shape, 5)) : noise(shape, 5);
+        const std::vector<Tensor> moved = {value, first, second, average};
+        std::vector<Tensor> before;
+        for (const Tensor& x : moved) before.push_back(x.clone());
         (ours ? move_along : move_along_by_operators)(gradient, value, first, second, average,
                                                       rates);
-        results.push_back({value, first, second, average});
+        results.push_back(moved);
+        for (std::size_t i = 0; i < moved.size(); ++i) {
+          EXPECT_FALSE(torch::allclose(moved[i], before[i], 1e-3)) << i << shape;
+        }
       }
-      for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t i = 0; i < results[0].size(); ++i) {
         EXPECT_TRUE(torch::allclose(results[0][i], results[1][i], 1e-5, 1e-6)) << i << shape;
-        EXPECT_FALSE(torch::allclose(results[0][i], noise(shape, 1 + static_cast<long>(i)), 1e-3));
       }
     }
   }
@@ -69,7 +74,8 @@ TEST(LogDepthLoss, and_its_gradients_are_the_operators) {
     for (const double known_share : {1., .6, 0.}) {
       const Tensor known =
           (torch::rand(shape, generator_of(3, 0)) < known_share).to(torch::kFloat32);
-      const Tensor truth = noise(shape, 2);
+      const float nothing = std::numeric_limits<float>::quiet_NaN();
+      const Tensor truth = noise(shape, 2).masked_fill(known == 0, nothing);
       std::vector<LogDepthLoss> losses;
       std::vector<Tensor> gradients;
       for (const bool ours : {true, false}) {
@@ -88,7 +94,7 @@ TEST(LogDepthLoss, and_its_gradients_are_the_operators) {
   }
 }
 
-TEST(Upright, samples_as_libtorchs_grid_does) {
+TEST(SampledUpright, samples_as_libtorchs_grid_does) {
   // Upright, mirrored, shifted beyond the border.
   const Tensor theta = torch::tensor({1., 0., 0., 0., 1., 0.,    //
                                       -.7, 0., .2, 0., .7, -.3,  //
@@ -99,13 +105,27 @@ TEST(Upright, samples_as_libtorchs_grid_does) {
     const Tensor x = noise({3, channels, 13, 22}, 1);
     const Tensor grid = torch::nn::functional::affine_grid(theta, x.sizes(), false);
     for (const bool nearest : {false, true}) {
-      const Tensor ours = upright(x, theta, nearest);
+      const Tensor ours = sampled_upright(x, theta, nearest);
       const Tensor theirs = torch::grid_sampler(x, grid, nearest ? 1 : 0, 1, false);
       // The nearest of two that are as near may be either.
       const Tensor off = ((ours - theirs).abs() > 1e-4).to(torch::kFloat32).mean();
       EXPECT_LE(off.item<double>(), nearest ? .02 : 0) << channels << nearest;
     }
   }
+}
+
+TEST(SampledUpright, copies_the_nearest_and_takes_other_types) {
+  const float far = std::numeric_limits<float>::infinity();
+  const Tensor x = torch::tensor({1.F, far, 2.F, 3.F}).view({1, 1, 2, 2});
+  const Tensor same = torch::tensor({1.F, 0.F, 0.F, 0.F, 1.F, 0.F}).view({1, 2, 3});
+  EXPECT_TRUE(torch::equal(sampled_upright(x, same, true), x));
+  const Tensor wide = noise({1, 3, 5, 4}, 1), turned = same * .8;
+  EXPECT_TRUE(torch::allclose(sampled_upright(wide.to(torch::kFloat64), turned, false),
+                              sampled_upright(wide, turned, false).to(torch::kFloat64), 1e-5,
+                              1e-5));
+  EXPECT_THROW(sampled_upright(wide, torch::zeros({2, 2, 3}), false), c10::Error);
+  const Tensor none = torch::zeros({0, 3, 4, 4});
+  EXPECT_EQ(sampled_upright(none, torch::zeros({0, 2, 3}), false).size(0), 0);
 }
 
 TEST(Tinted, changes_colours_as_operators_do) {

@@ -5,13 +5,17 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "libps/train/depth_net.h"
 #include "libps/train/elu_taps.h"
 #include "libps/train/layers.h"
 #include "libps/train/leaky.h"
 #include "libps/train/narrow_norm.h"
+#include "libps/train/pixel_cnn.h"
 #include "libps/train/upsample.h"
 #include "libps/train/upsampled_sum.h"
 
@@ -191,11 +195,56 @@ TEST(EluTaps, stay_near_a_concatenation_and_a_gathering) {
         << (results[0][1] - results[1][1]).abs().max();
   }
   const NarrowProducts on(true);
-  const Tensor odd = torch::tensor({std::nanf(""), 200.F, -200.F}).view({1, 3});
-  const Tensor y = concat_elu(odd).to(torch::kFloat32);
-  EXPECT_TRUE(torch::isnan(y[0][0]).item<bool>());
-  EXPECT_EQ(y[0][2].item<float>(), -1);
-  EXPECT_EQ(y[0][4].item<float>(), -1);
+  const float far = std::numeric_limits<float>::infinity();
+  const Tensor odd = torch::tensor({200.F, -200.F, far, -far}).view({1, 4});
+  const Tensor wanted = torch::tensor({200.F, -1.F, far, -1.F, -1.F, 200.F, -1.F, far});
+  EXPECT_TRUE(torch::equal(concat_elu(odd).to(torch::kFloat32).view({-1}), wanted));
+  EXPECT_TRUE(torch::isnan(concat_elu(torch::full({1, 1}, std::nanf("")))).all().item<bool>());
+}
+
+/// Of the norm of what is wanted.
+double share_off(const Tensor& x, const Tensor& wanted) {
+  return ((x - wanted).norm() / wanted.norm()).item<double>();
+}
+
+/// The narrow network's outputs and gradients against the wide one's, as shares of the largest.
+template <class Forward>
+void expect_near_wide(Parameters& parameters, const Forward& forward, double limit) {
+  std::vector<std::map<std::string, Tensor>> results;
+  for (const bool narrow : {true, false}) {
+    const NarrowProducts on(narrow);
+    for (const auto& [name, tensor] : parameters.trained()) tensor.mutable_grad() = Tensor();
+    const Tensor y = forward();
+    (y * torch::randn(y.sizes(), generator_of(6, 0))).sum().backward();
+    std::map<std::string, Tensor> all = {{"", y.detach().clone()}};
+    for (const auto& [name, tensor] : parameters.trained()) {
+      // Of a bias before a norm nothing but rounding is left.
+      if (tensor.dim() > 1) all[name] = tensor.grad().clone();
+    }
+    results.push_back(std::move(all));
+  }
+  for (const auto& [name, wide] : results[1]) {
+    const double off = share_off(results[0].at(name), wide);
+    EXPECT_LT(off, limit) << name;
+    EXPECT_GT(off, 0) << name;  // or nothing was narrow
+  }
+}
+
+TEST(NarrowProducts, of_a_depth_network_in_training_stay_near_wide_ones) {
+  DepthNet net(4, 1);
+  const Tensor x = signal({4, 3, 256, 256}, 1, true);
+  expect_near_wide(
+      net.parameters, [&] { return net.forward(x, true); }, .2);
+}
+
+TEST(NarrowProducts, of_a_pixel_cnn_stay_near_wide_ones) {
+  constexpr int kCodes = 20;
+  PixelCnn net(8, kCodes, 1);
+  const Tensor codes = torch::randint(kCodes, {2, 8, 16}, generator_of(2, 0));
+  const Tensor order = torch::stack(
+      {torch::randperm(128, generator_of(3, 0)), torch::randperm(128, generator_of(4, 0))});
+  expect_near_wide(
+      net.parameters, [&] { return net.forward(codes, order); }, .2);
 }
 
 TEST(NormedConvolution, stays_near_a_convolution_and_a_norm) {
@@ -213,6 +262,17 @@ TEST(NormedConvolution, stays_near_a_convolution_and_a_norm) {
   EXPECT_TRUE(torch::allclose(ours.to(torch::kFloat32), theirs, 1. / 256, 1e-4));
   EXPECT_TRUE(torch::allclose(p["norm.running_mean"], mean, 1e-4, 1e-5));
   EXPECT_TRUE(torch::allclose(p["norm.running_var"], var, 1e-4, 1e-5));
+  // Without a norm, the product alone; with a slope, the leaky ReLU, too.
+  for (const std::string norm : {"", "norm"}) {
+    const Tensor before = convolution(p, "conv", x, 1, 1);
+    const Tensor all =
+        torch::leaky_relu(norm.empty() ? before : batch_norm(p, norm, before, true), .2);
+    const Tensor sloping = normed_convolution(p, "conv", norm, x, 1, 1, .2F, true);
+    EXPECT_TRUE(torch::allclose(sloping.to(torch::kFloat32), all, 1. / 128, 1e-3)) << norm;
+    const Tensor still = norm.empty() ? before : batch_norm(p, norm, before, false);
+    EXPECT_TRUE(torch::equal(normed_convolution(p, "conv", norm, x, 1, 1, .2F, false),
+                             torch::leaky_relu(still, .2)));
+  }
   // Not in training, it is the two, digit for digit.
   EXPECT_TRUE(torch::equal(normed_convolution(p, "conv", "norm", x, 1, 1, 1, false),
                            batch_norm(p, "norm", convolution(p, "conv", x, 1, 1), false)));

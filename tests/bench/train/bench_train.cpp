@@ -72,7 +72,15 @@ void print_costliest(int count, int steps) {
   }
 }
 
+/// Of runs' files; gone with the object.
+struct Folder {
+  std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("bench_train-" + std::to_string(::getpid()));
+  ~Folder() { std::filesystem::remove_all(path); }
+};
+
 struct Speed {
+  int batch = 0;
   double images_per_second = 0, products = 0;
 };
 
@@ -91,8 +99,9 @@ Speed speed_of(ps::train::TrainOptions options, int steps, int warm_up) {
     seconds = ps::seconds_since(start);
     return true;
   };
-  ps::train::train(options, progress);
-  return {steps * options.batch / seconds, product_seconds / seconds};
+  std::filesystem::remove_all(options.out);  // else the stage before would be gone on with
+  const int batch = ps::train::train(options, progress).batch;
+  return {batch, steps * batch / seconds, product_seconds / seconds};
 }
 
 }  // namespace
@@ -100,13 +109,12 @@ Speed speed_of(ps::train::TrainOptions options, int steps, int warm_up) {
 int main(int argc, char** argv) {
   CLI::App app("Speed of training, and its products' share of the time");
   ps::train::TrainOptions options;
-  std::string codes = "data/weights/vqvae.safetensors",
-              stages = "vqvae depth classifier refine pixelcnn";
-  std::string features;
+  std::string codes = "data/weights/vqvae.safetensors", features;
+  std::vector<std::string> stages = ps::train::stage_names();
   int steps = 40, warm_up = 10, costliest = 0;
   app.add_option("--data", options.train, "Folder of examples, as `train data` writes to train/")
       ->required();
-  app.add_option("--stages", stages, "Names with spaces between")->capture_default_str();
+  app.add_option("--stages", stages, "Names with commas between")->delimiter(',');
   app.add_option("--codes", codes, "Weights of a VQ-VAE")->capture_default_str();
   app.add_option("--features", features, "Weights of LPIPS, for refine");
   app.add_option("--arithmetic", options.arithmetic)->capture_default_str();
@@ -116,27 +124,22 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   steps = std::max(steps / 10, 1) * 10;
   watch_operators();
+  const Folder runs;
+  options.out = runs.path;
   std::printf("%-12s %6s %16s %20s\n", "stage", "batch", "images a second", "share of products");
-  for (const std::string& stage : CLI::detail::split(stages, ' ')) {
+  for (const std::string& stage : stages) {
     options.stage = stage;
     options.codes = stage == "pixelcnn" || stage == "refine" ? codes : "";
     options.features = stage == "refine" ? features : "";
-    options.batch = stage == "vqvae"        ? 24
-                    : stage == "classifier" ? 32
-                    : stage == "pixelcnn"   ? 16
-                                            : 8;
-    options.out =
-        std::filesystem::temp_directory_path() / ("bench_train-" + std::to_string(::getpid()));
     try {
       const Speed speed = speed_of(options, steps, warm_up);
-      std::printf("%-12s %6d %16.1f %18.0f %%\n", stage.c_str(), options.batch,
+      std::printf("%-12s %6d %16.1f %18.0f %%\n", stage.c_str(), speed.batch,
                   speed.images_per_second, 100 * speed.products);
       print_costliest(costliest, steps);
     } catch (const ps::Error& error) {
       std::fprintf(stderr, "%s\n", error.what());
       return 1;
     }
-    std::filesystem::remove_all(options.out);
   }
   return 0;
 }
