@@ -27,7 +27,9 @@ std::string shape_text(const Tensor& tensor) {
 void copy_named(const Tensor& to, const TensorsByName& from, const std::string& name,
                 const std::string& where) {
   const auto found = from.find(name);
-  if (found == from.end()) throw Error(where, "there is no tensor " + name);
+  if (found == from.end()) {
+    throw Error(where, "there is no tensor " + name, "tensors of the network that is trained");
+  }
   if (found->second.sizes() != to.sizes()) {
     throw Error(where, name + " has shape " + shape_text(found->second), shape_text(to));
   }
