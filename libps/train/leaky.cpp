@@ -63,9 +63,7 @@ class Leaky : public torch::autograd::Function<Leaky> {
 }  // namespace
 
 Tensor leaky(const Tensor& x, float slope) {
-  if (!is_narrow_on_cpu(x)) {
-    return torch::leaky_relu(x, slope);
-  }
+  if (!is_narrow_on_cpu(x)) return torch::leaky_relu(x, slope);
   return Leaky::apply(x, static_cast<double>(slope));
 }
 
